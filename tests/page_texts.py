@@ -9,6 +9,8 @@ from typing import Any
 from babel.messages.extract import extract_javascript
 
 from rockflex.motion import MEASURES
+from rockflex.response import DEMANDS
+from rockflex.response._limit_checks import KINDS, SOURCES
 from rockflex.web import _earthquake, _structure
 from rockflex.web._app import STATIC, _answer_about_page
 
@@ -25,11 +27,13 @@ def texts_of_scripts() -> set[str]:
 def texts_of_answers() -> set[str]:
     """The texts of the server's answers that the page looks up where it shows them.
 
-    They are titles, labels and help of forms, presets, pulses and limit states; names of measures; tendons of a design;
-    and what stands beside the values of a structure and a record.
+    They are titles, labels and help of forms, presets, pulses and limit states; names of measures, demands and checks;
+    tendons of a design; and what stands beside the values of a structure and a record.
     """
     found = {*_of_forms(_answer_about_page()), *_of_facts(), "no tendon", "its own tendons", _structure.RECENTRING_HELP}
+    found |= {"limits of checks", "the rule of a set", "results"}  # what the page leaves of a project
     found |= {text for measure in MEASURES.values() for text in (measure.head, measure.words, measure.title)}
+    found |= {*SOURCES, *(each.name for each in KINDS), *(demand.symbol for demand in DEMANDS.values())}
     return found - {""}
 
 

@@ -40,6 +40,7 @@ QUANTITIES: Mapping[str, tuple[str, str, str, str]] = {
     "elastic modulus": ("GPa", "GPa", "Pa", "ksi"),
     "stiffness": ("MN/m", "MN/m", "N/m", "kip/in"),
     "rotational stiffness": ("MN m/rad", "MN m/rad", "N m/rad", "kip in/rad"),
+    "subgrade modulus": ("MN/m³", "MN/m³", "N/m³", "kip/in³"),
     "damping": ("kN s/m", "MN s/m", "N s/m", "kip s/in"),
     "area": ("m²", "m²", "m²", "in²"),
     "second moment of area": ("m⁴", "m⁴", "m⁴", "in⁴"),
@@ -115,8 +116,9 @@ def checked_unit_system(name: object, field: str = "units") -> UnitSystem:
     return UnitSystem(name)  # pyright: ignore[reportArgumentType]
 
 
-# Not in names and versions such as 2.1.3 or RSN6_1.5, nor in references to sections and equations.
-_DECIMAL_POINT = re.compile(r"(?<![\w.])(?<!Section )(?<!Eq\. )(\d[\d\u202f]*)\.(?=\d+(?:e[+\-−]?\d+)?(?!\.?\w))")
+# Not in names and versions such as 2.1.3 or RSN6_1.5, nor in references to sections and equations in any language.
+_REFERENCES = "".join(f"(?<!{word} )" for word in (r"Eq\.", "[Ss]ection", "Abschnitt", "Sezione", "sección"))
+_DECIMAL_POINT = re.compile(rf"(?<![\w.]){_REFERENCES}(\d[\d\u202f]*)\.(?=\d+(?:e[+\-−]?\d+)?(?!\.?\w))")
 
 
 def with_decimal_commas(text: str) -> str:

@@ -23,6 +23,7 @@ ALLOWED = {
     "solve": {"models", "engine", "motion"},
     "response": {"solve", "models", "modal", "motion"},
     "study": {
+        "engine",
         "motion",
         "modal",
         "structure",
@@ -45,7 +46,7 @@ ALLOWED = {
         "plot",
         "report",
     },
-    "kinds": {"engine", "motion", "structure", "study", "fragility", "plot", "papers"},
+    "kinds": {"motion", "structure", "study", "fragility", "plot", "papers"},
 }
 FOUNDATION = {
     "_arrays",
@@ -57,6 +58,7 @@ FOUNDATION = {
     "_files",
     "_html",
     "_json",
+    "_language",
     "_matrices",
     "_number_format",
     "_registry",

@@ -170,3 +170,55 @@ def test_a_random_structure_that_cannot_be_built_is_an_error_of_its_runs():
 @pytest.mark.slow
 def test_a_cluster_gives_the_same_rows(cluster):
     pd.testing.assert_frame_equal(rf.run_study(made(), dask=cluster.address), rf.run_study(made()))
+
+
+CALLS = {
+    "cloud": lambda **where: rf.run_cloud({"A": YIELDS, "B": HELD}, SUITE, demands={"roof": roof}, **where),
+    "incremental": lambda **where: rf.run_incremental(
+        YIELDS, SUITE, smallest_scale=0.5, largest_scale=2.0, growth=2.0, tolerance=0.3, demands={"roof": roof}, **where
+    ),
+    "population": lambda **where: rf.run_population(SUITE, pairs=3, seed=1, **where),
+}
+
+
+@pytest.mark.parametrize("kind", CALLS)
+def test_a_call_with_a_folder_stores_what_it_returns(kind, tmp_path):
+    whole, told = CALLS[kind](), []
+    pd.testing.assert_frame_equal(CALLS[kind](folder=tmp_path / "study"), whole)
+    found = rf.StudyFolder.load(tmp_path / "study")
+    assert found.finished
+    assert found.manifest.spec["study"] == kind
+    again = CALLS[kind](folder=tmp_path / "study", progress=lambda done, total: told.append((done, total)))
+    pd.testing.assert_frame_equal(again, whole)
+    assert told[-1][0] == told[-1][1]
+    assert len(told) == 2  # the start, and what was stored before
+
+
+def test_a_stopped_call_is_resumed_also_as_a_study(tmp_path):
+    many = [rf.one_sine_pulse(1.0 + 0.01 * place, 0.8) for place in range(100)]
+    records = {f"P{place}": pulse for place, pulse in enumerate(many)}
+
+    def stop(done, total):
+        if done:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rf.run_cloud(YIELDS, records, folder=tmp_path, workers=1, progress=stop)
+    assert len(rf.StudyFolder.load(tmp_path).missing()) == 1
+    study = rf.CloudStudy(structures=YIELDS, records=records, runs_per_chunk=64)
+    pd.testing.assert_frame_equal(rf.run_study(study, tmp_path), rf.run_cloud(YIELDS, records))
+    with pytest.raises(rf.InputError, match=r"another study[\s\S]*scales"):
+        rf.run_cloud(YIELDS, records, scales=2.0, folder=tmp_path)
+
+
+@pytest.mark.slow
+def test_calls_run_on_a_cluster(cluster, tmp_path):
+    for call in CALLS.values():
+        pd.testing.assert_frame_equal(call(dask=cluster.address), call(dask=cluster.address, folder=tmp_path / "a"))
+        pd.testing.assert_frame_equal(call(dask=cluster.address), call())
+        (tmp_path / "a").rename(tmp_path / f"stored-{len(list(tmp_path.iterdir()))}")
+    widths = {"half_widths": [1.0, 1.5], "demands": {"roof": roof}}
+    there = rf.run_design(YIELDS, SUITE, **widths, dask=cluster.address)
+    pd.testing.assert_frame_equal(there, rf.run_design(YIELDS, SUITE, **widths))
+    with pytest.raises(rf.InputError, match="workers is for this machine"):
+        rf.run_design(YIELDS, SUITE, **widths, dask=cluster.address, workers=2)

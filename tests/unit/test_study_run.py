@@ -14,9 +14,9 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds import KINDS, StudyFindings, _run_study
+from rockflex.kinds import KINDS, StudyFindings
 from rockflex.structure.file import StructureEntry
-from rockflex.study import ChunkedPlan, StudySpec
+from rockflex.study import ChunkedPlan, StudySpec, _run_plan
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -241,7 +241,7 @@ def test_a_changed_shape_is_another_study(tmp_path):
 def test_a_folder_records_the_level_of_vector_instructions(tmp_path, monkeypatch):
     level = rf.fill_study(STUDY, tmp_path, share=(1, 2)).manifest.versions["vector instructions"]
     assert level == VECTOR_LEVEL
-    monkeypatch.setattr(_run_study, "VECTOR_LEVEL", "v9")
+    monkeypatch.setattr(_run_plan, "VECTOR_LEVEL", "v9")
     with pytest.raises(InputError, match=rf'vector instructions: "{level}" in the folder, "v9" now\n.*ROCKFLEX_SIMD'):
         rf.fill_study(STUDY, tmp_path)
     assert rf.fill_study(STUDY, tmp_path, any_version=True).finished

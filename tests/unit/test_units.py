@@ -30,6 +30,7 @@ DIMENSIONS = {
     "elastic modulus": (1, -2, 0),
     "stiffness": (1, -1, 0),
     "rotational stiffness": (1, 1, 0),
+    "subgrade modulus": (1, -3, 0),
     "damping": (1, -1, 1),
     "area": (0, 2, 0),
     "second moment of area": (0, 4, 0),
@@ -134,7 +135,7 @@ def test_values_of_reports_are_the_same_in_every_system(kind, tmp_path):
     assert not re.search(r"\d\.\d", numbers)
 
 
-@pytest.mark.parametrize(("option", "value"), [("units", "kips"), ("units", 3), ("decimal", ";"), ("decimal", None)])
+@pytest.mark.parametrize(("option", "value"), [("units", "kips"), ("units", 3), ("decimal", ";"), ("language", "la")])
 def test_unknown_units_and_signs_are_refused(tmp_path, option, value):
     with pytest.raises(rf.InputError, match=option) as caught:
         rf.write_report(runs(FRAME, PULSE, ["2DOF-S"]), tmp_path / "r.html", **{option: value})

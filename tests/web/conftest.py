@@ -7,6 +7,7 @@ import shutil
 import threading
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -22,7 +23,7 @@ pytest.importorskip("starlette", reason="the web page needs the packages of rock
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
 
 
-TASKS = ["structure", "optional", "devices", "ground", "runs", "import", "modes"]  # all of the forms, unfolded
+TASKS = ["structure", "optional", "devices", "ground", "runs", "import", "project", "modes"]  # the forms, unfolded
 MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
 
 
@@ -62,16 +63,15 @@ class Client:
         return answer["errors"]
 
     def download(self, path: str, state: dict[str, Any]) -> tuple[str, bytes]:
-        status, headers, body = self.request(
-            path, json.dumps({"state": state}).encode(), Content_Type="application/json"
-        )
-        assert status == 200, body
-        return headers["content-disposition"].split('"')[1], body
+        """The name and the content of a file."""
+        made = self.made(path.removeprefix("/api/file/"), state)
+        assert made["status"] == "done", made
+        return made["name"], made["content"]
 
     def program(self, what: str, state: dict[str, Any]) -> dict[str, Any]:
         """What a downloaded program leaves."""
         space: dict[str, Any] = {}
-        exec(compile(self.download(f"/api/download/{what}", state)[1], f"{what}.py", "exec"), space)
+        exec(compile(self.download(f"/api/file/{what}", state)[1], f"{what}.py", "exec"), space)
         return space
 
     def study(self, kind: str, state: dict[str, Any], seconds: float = 60.0) -> tuple[str, Any]:
@@ -85,8 +85,8 @@ class Client:
         return np.frombuffer(base64.b64decode(text), "<f4")
 
     def make(self, what: str, state: dict[str, Any]) -> str:
-        """Start to make a file, and return its token."""
-        return self.ask(f"/api/file/{what}", state)["token"]
+        """Start to make a file, or one of a study by its whole path, and return its token."""
+        return self.ask(what if what.startswith("/") else f"/api/file/{what}", state)["token"]
 
     def made(self, what: str, state: dict[str, Any], seconds: float = 120.0) -> Any:
         """How the making of a file ended, with the file itself if there is one."""
@@ -97,15 +97,16 @@ class Client:
             if answer["status"] not in ("waiting", "running"):
                 if answer["status"] == "done":
                     _, headers, body = self.request(f"{path}/content")
-                    answer |= {"name": headers["content-disposition"].split('"')[1], "content": body}
+                    name = urllib.parse.unquote(headers["content-disposition"].split("UTF-8''")[1])
+                    answer |= {"name": name, "content": body}
                 return answer
             time.sleep(0.1)
         pytest.fail(f"The file took more than {seconds} s.")
 
     def state(self, **changes: Any) -> dict[str, Any]:
-        """The first state of the page with a frame of Table 1, changed."""
+        """The first state of the page with a frame of Table 1, in SI units, changed."""
         about = json.loads(self.request("/api/about")[2])
-        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0} | changes
+        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0, "units": "SI"} | changes
 
     def wait(self, kind: str, token: str, state: dict[str, Any], seconds: float = 60.0) -> Any:
         """Progress of a study once it is over."""
@@ -241,7 +242,8 @@ class Visitor:
 
 
 def link_to(state: Any) -> str:
-    """Address of a state."""
+    """Address of a state, in SI units where it names no others."""
+    state = {"units": "SI"} | state if isinstance(state, dict) else state
     text = base64.urlsafe_b64encode(json.dumps(state).encode()).decode().rstrip("=")
     return f"/#s={text}"
 
@@ -284,11 +286,12 @@ def pier_run(pier: rf.Restrained, el_centro: rf.GroundMotion) -> rf.Response:
 def visit(browser: Any, server: str) -> Iterator[Any]:
     contexts, visitors = [], []
 
-    def new(link: str = "/", **options: Any) -> Visitor:
+    def new(link: str = "/", folded: bool = False, **options: Any) -> Visitor:
         usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
         context = browser.new_context(**{**usual, **options})
         unfold = f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)"
-        context.add_init_script(f"if (location.protocol === 'http:') {unfold}")
+        if not folded:
+            context.add_init_script(f"if (location.protocol === 'http:') {unfold}")
         contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(180_000)

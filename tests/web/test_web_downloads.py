@@ -34,7 +34,7 @@ BED = {"base_inertia": 5e5, "springs": {"positions": [-1.0, 0.0, 1.0], "stiffnes
 
 def test_the_report_has_the_numbers_of_the_tab(client) -> None:
     state = client.state(**STATE)
-    name, body = client.download("/api/download/report", state)
+    name, body = client.download("/api/file/report", state)
     assert name == "report.html"
     text = body.decode()
     for each in client.ask("/api/response", state)["models"]:
@@ -48,24 +48,24 @@ def test_the_report_has_the_numbers_of_the_tab(client) -> None:
 
 def test_names_of_visitors_are_text(client) -> None:
     structure = PRESETS[0]["structure"] | {"name": "<img src=x onerror=alert(1)>"}
-    text = client.download("/api/download/report", client.state(structure=structure))[1].decode()
+    text = client.download("/api/file/report", client.state(structure=structure))[1].decode()
     assert "&lt;img src=x onerror=alert(1)&gt;" in text
     assert "<img" not in text
 
 
 def test_what_takes_long_is_left_out_and_said(client, monkeypatch) -> None:
     on_springs = client.state(models=["2DOF-S"], ground=BED)
-    text = client.download("/api/download/report", on_springs)[1].decode()
+    text = client.download("/api/file/report", on_springs)[1].decode()
     assert text.count("<td>not computed</td>") == 2
     assert "Not computed: energies and friction of a run that would take too long here." in text
     monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
-    client.download("/api/download/report", on_springs)
+    client.download("/api/file/report", on_springs)
 
     def refuse(*_):
         raise _downloads.Refusal({"energy": "too long"})
 
     monkeypatch.setattr(_downloads, "check_work_of_energy", refuse)
-    text = client.download("/api/download/report", client.state(models=["2DOF-S"]))[1].decode()
+    text = client.download("/api/file/report", client.state(models=["2DOF-S"]))[1].decode()
     assert text.count("<td>not computed</td>") == 2
 
 
@@ -237,10 +237,8 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
         button.click()
         page.wait_for_function("b => b.ariaBusy === 'true'", arg=button.element_handle())
         button.click()  # once is enough
-        page.wait_for_function(
-            "() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('#making-animation').innerText)"
-        )
-        assert 0.0 < page.locator("#making-animation progress").evaluate("bar => bar.value") < 1.0
+        page.wait_for_function("() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('.downloads').innerText)")
+        assert 0.0 < page.locator(".making progress").evaluate("bar => bar.value") < 1.0
     content = got.value.path().read_bytes()
     assert got.value.suggested_filename == "animation.gif"
     with Image.open(io.BytesIO(content)) as image:
@@ -248,7 +246,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
         assert image.n_frames > 100
         assert image.size[0] == 800
     page.wait_for_function("b => b.ariaBusy === 'false'", arg=button.element_handle())
-    assert page.locator("#making-animation").inner_text() == "Saved."
+    assert page.locator(".downloads [role=status]").inner_text() == "Saved."
     assert not visitor.said
 
 
@@ -259,8 +257,8 @@ def test_an_animation_can_be_cancelled_on_the_page(visit, link, client) -> None:
     saved = []
     page.on("download", lambda each: saved.append(each))
     page.get_by_role("button", name="Animation (GIF)").click()
-    page.locator("#making-animation").get_by_role("button", name="Cancel").click()
-    page.wait_for_function("() => document.querySelector('#making-animation').innerText === 'Cancelled.'")
+    page.locator(".making").get_by_role("button", name="Cancel").click()
+    page.locator(".downloads").get_by_text("Cancelled.", exact=True).wait_for()
     assert page.locator('[data-file="animation"]').evaluate("b => b.ariaBusy") == "false"
     assert saved == []
 

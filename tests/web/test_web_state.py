@@ -249,8 +249,10 @@ def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
     state = parse_page_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
+    content["units"] = "kN"
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
+    content |= {"alternatives": [], "head": {}}
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert as_json_value(state.model_dump(exclude_none=True)) == content
@@ -395,7 +397,7 @@ def test_an_added_measure_is_offered_taken_and_told(client) -> None:
         "name": "twice",
         "title": "2 PGA, twice the peak",
         "unit": "m/s²",
-        "axis": "2 PGA [m/s²]",
+        "axis": "2 PGA",
         "of_base": False,
     }
     assert (lifts["axis"], lifts["of_base"]) == ("2 PGA", True)

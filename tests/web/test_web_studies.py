@@ -61,7 +61,7 @@ def test_files_of_a_cloud(client, cloud, tmp_path, monkeypatch, runs) -> None:
     state = client.state(cloud=CLOUD)
     assert b"max_rotation" in client.download(f"/api/study/cloud/{cloud}/table", state)[1]
     assert b"<svg" in client.download(f"/api/study/cloud/{cloud}/figure", state)[1]
-    name, study = client.download("/api/download/cloud-study", state)
+    name, study = client.download("/api/file/cloud-study", state)
     (tmp_path / name).write_bytes(study)
     assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == runs["max_rotation"].tolist()
     space = client.program("cloud-python", state)
@@ -96,7 +96,7 @@ def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     assert b"<svg" in client.download(f"/api/study/design/{token}/figure", state)[1]
     assert b"half_width" in client.download(f"/api/study/design/{token}/table", state)[1]
     assert client.post(f"/api/study/cloud/{token}", {"state": state})[0] == 404  # of another kind
-    name, study = client.download("/api/download/design-study", state)
+    name, study = client.download("/api/file/design-study", state)
     (tmp_path / name).write_bytes(study)
     assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == found["max_rotation"].tolist()
 
@@ -113,7 +113,7 @@ def test_studies_have_the_assumptions_of_the_response(client, tmp_path, monkeypa
         token, answer = client.study(kind, state, 120.0)
         assert answer["status"] == "done"
         space = client.program(f"{kind}-python", state)
-        name, study = client.download(f"/api/download/{kind}-study", state)
+        name, study = client.download(f"/api/file/{kind}-study", state)
         (tmp_path / name).write_bytes(study)
         again = rf.run_study(tmp_path / name)
         assert again["error"].isna().all()

@@ -98,13 +98,13 @@ def test_a_choice_that_nobody_waits_for_is_not_begun(client) -> None:
 def test_files_of_the_choice(client, tmp_path, monkeypatch) -> None:
     state = client.state(target={"count": 3})
     chosen = SUITE.select(rf.ec8_spectrum(0.25 * G, "C"), 3, (0.2, 2.0))
-    name, spectra = client.download("/api/download/selection-spectra", state)
+    name, spectra = client.download("/api/file/selection-spectra", state)
     assert name == "spectra.csv"
     assert pd.read_csv(io.BytesIO(spectra))["mean"].tolist() == pytest.approx(chosen.mean.tolist(), rel=1e-12)
-    table = pd.read_csv(io.BytesIO(client.download("/api/download/selection", state)[1]))
+    table = pd.read_csv(io.BytesIO(client.download("/api/file/selection", state)[1]))
     assert table["factor"].tolist() == pytest.approx(chosen.factors.tolist(), rel=1e-12)
-    assert b"<svg" in client.download("/api/download/selection-figure", state)[1]
-    packed = client.download("/api/download/selection-records", state)[1]
+    assert b"<svg" in client.download("/api/file/selection-figure", state)[1]
+    packed = client.download("/api/file/selection-records", state)[1]
     zipfile.ZipFile(io.BytesIO(packed)).extractall(tmp_path / "scaled")
     read = rf.read_suite(tmp_path / "scaled")
     assert [motion.pga for motion in read] == [motion.pga for motion in chosen.suite]
@@ -125,7 +125,7 @@ def test_chosen_records_are_a_suite_of_the_studies(client, frame, tmp_path) -> N
     assert pd.read_csv(io.BytesIO(table))["max_rotation"].tolist() == pytest.approx(
         runs["max_rotation"].tolist(), rel=1e-9
     )
-    packed = client.download("/api/download/cloud-records", state)[1]
+    packed = client.download("/api/file/cloud-records", state)[1]
     zipfile.ZipFile(io.BytesIO(packed)).extractall(tmp_path / "records")
     assert set(rf.read_suite(tmp_path / "records").names) == set(chosen.suite.names)
     both = client.state(cloud=cloud | {"suites": ["chosen", "fema-p695-far-field"]})
@@ -141,15 +141,15 @@ def test_records_of_a_folder_are_chosen(client, tmp_path, monkeypatch) -> None:
     state = client.state(record={"folder": found["folder"], "vertical": True}, target=target)
     view = client.ask("/api/selection", state)
     assert view["offered"] == 3
-    packed = client.download("/api/download/selection-records", state)[1]
+    packed = client.download("/api/file/selection-records", state)[1]
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         assert len(archive.namelist()) == 2
         archive.extractall(tmp_path / "scaled")
     scaled = rf.read_suite(tmp_path / "scaled")
     factors = {each["record"]: each["factor"] for each in view["records"]}
     assert {motion.name: motion.metadata.scale for motion in scaled} == pytest.approx(factors)
-    program = client.download("/api/download/selection-python", state)[1].decode()
-    name, packed = client.download("/api/download/records", state)
+    program = client.download("/api/file/selection-python", state)[1].decode()
+    name, packed = client.download("/api/file/records", state)
     assert f"# unpacked from {name}, which the page saves: Your records (ZIP)" in program
     monkeypatch.chdir(tmp_path)
     zipfile.ZipFile(io.BytesIO(packed)).extractall("your-records")

@@ -21,7 +21,7 @@ import rockflex as rf
 from record_samples import cosmos, esm, knet
 from rockflex.structure.file import StructureEntry
 from rockflex.web import _app
-from rockflex.web._downloads import download_file
+from rockflex.web._downloads import file_maker
 from rockflex.web._earthquake import record_view
 from rockflex.web._folders import (
     SentRecordFile,
@@ -85,7 +85,7 @@ def test_a_column_may_be_vertical_and_comes_back(client, tmp_path) -> None:
     uploads = UploadedRecords()
     key = uploads.add(read_uploaded_record("a.csv", content, None, None), content, "")
     state = parse_page_state(client.state() | {"record": {"source": "upload", "upload": key}})
-    name, saved = download_file(state, "record", uploads)[0::2]
+    name, saved = file_maker(state, "record", uploads)(lambda *_: None)
     (tmp_path / name).write_bytes(saved)
     assert rf.read_motion(tmp_path / name).vertical.tolist() == [0.0, 0.5, 0.0]
     told = record_view(state, uploads)["measures"]
@@ -204,7 +204,7 @@ def test_rotations_are_imported_in_any_layout(client, heights) -> None:
     )
     assert view["freedoms"] == "Degrees of freedom: 2 sideways, 2 rotational. Without mass, and condensed out: 2."
     state = client.state(structure={"matrices": found | SCALARS})
-    _, toml = client.download("/api/download/structure", state)
+    _, toml = client.download("/api/file/structure", state)
     again = StructureEntry.model_validate(tomllib.loads(toml.decode())).build()
     np.testing.assert_allclose(again.modal().period, expected.modal().period, rtol=1e-12)
 
@@ -405,7 +405,7 @@ def test_a_study_of_it_its_archive_its_file_and_its_program(client, tmp_path, fr
     token, answer = client.study("cloud", state)
     assert answer["status"] == "done"
     table = client.download(f"/api/study/cloud/{token}/table", state)[1]
-    name, packed = client.download("/api/download/records", state)
+    name, packed = client.download("/api/file/records", state)
     assert name == "your-records.zip"
     zipfile.ZipFile(io.BytesIO(packed)).extractall(tmp_path / "records")
     suite = rf.read_suite(tmp_path / "records")
@@ -416,7 +416,7 @@ def test_a_study_of_it_its_archive_its_file_and_its_program(client, tmp_path, fr
     assert told["max_rotation"].to_numpy() == pytest.approx(
         runs.sort_values(["motion", "scale"])["max_rotation"].to_numpy(), rel=1e-12
     )
-    text = client.download("/api/download/cloud-study", state)[1].decode()
+    text = client.download("/api/file/cloud-study", state)[1].decode()
     assert "# Unpack the records, which the page saves as records.zip, into the folder records" in text
     (tmp_path / "cloud.toml").write_text(text)
     records = tomllib.loads(text)["records"]

@@ -29,8 +29,6 @@ A TOML file with the arguments of rockflex.CheckLimits in SI units, such as drif
 breadth = 6.0, bearing_pressure = 300e3, contact_ratio = 0.5, seat_width = 0.4, toe_length = 0.3, toe_stress = 20e6."""
 
 DEFAULT_MODELS = ("MDOF-S", "2DOF-S-BW", "rigid")
-OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
-              "min_vertical_reaction")  # fmt: skip
 STATISTICS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "design"}
 VERDICTS = {True: ("ok", "green"), False: ("fails", "bold red"), None: ("-", "")}
 
@@ -65,6 +63,7 @@ def check(
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if a limit is exceeded.")] = False,
     output_units: options.OutputUnits = None,
+    language: options.ReportLanguage = None,
     decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     report: Annotated[Path | None, options.option("--report", "FILE.html", "Write a report of the set.")] = None,
@@ -87,6 +86,7 @@ def check(
     from rockflex.study import simulate_set
 
     page = None if report is None else checked_path_of_report(report, force=force)
+    written = options.report_format(page, output_units, language, comma=decimal_comma)
     given = read_limits(limits)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=None if model is None else [model],
@@ -134,7 +134,6 @@ def check(
         _print_checks(table, shown)
     console.print_warnings((*loaded.warnings, *found.warnings))
     if page is not None:
-        written = options.report_format(output_units, comma=decimal_comma)
         write_report(found, page, structure=loaded.built, title=loaded.name, limits=given, **written)
         console.print_remark(f"Written to {page}")
     if strict and not table.ok:
@@ -166,10 +165,10 @@ def read_limits(file: Path | None) -> "CheckLimits":
 
 
 def _print_set(found: "RecordSet", units: UnitSystem) -> None:
-    from rockflex.response import DEMANDS
+    from rockflex.response import DEMANDS, DEMANDS_BY_RECORD
 
     peaks, statistics = found.peaks, found.statistics
-    shown = {name: DEMANDS[name].unit_in(units) for name in OF_RECORDS if name in statistics.index}
+    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
     rows = [
         [
             str(motion),

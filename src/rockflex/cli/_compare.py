@@ -53,6 +53,7 @@ def compare(
     workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one per core.")] = None,
     work_limit: options.WorkLimit = None,
     output_units: options.OutputUnits = None,
+    language: options.ReportLanguage = None,
     decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     out: Annotated[
@@ -77,6 +78,7 @@ def compare(
     from rockflex.study import compare as run
 
     page = None if out is None else checked_path_of_report(out, force=force, flag="--out")
+    written = options.report_format(page, output_units, language, comma=decimal_comma)
     loaded, given, rest = load_alternatives(context, arguments or [], model)
     names = list(loaded)
     found = find_motions(rest, units, dt, on_error, vertical)
@@ -126,7 +128,7 @@ def compare(
     counts = zip(names, comparison.overturned, strict=True)
     console.print_warnings(f"{name} overturned under {n} of {len(found)} records" for name, n in counts if n)
     if page is not None:
-        write_report(comparison, page, **options.report_format(output_units, comma=decimal_comma))
+        write_report(comparison, page, **written)
         console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
 
 

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand
 
 from rockflex._errors import InputError
+from rockflex._language import Language
 from rockflex._schema import (
     BoucWenSchema,
     FrameFlags,
@@ -101,9 +102,21 @@ def flags_of_tables(*tables: type) -> dict[str, str]:
     return {name: command_line_flag(name, key) for table in tables for name, _, key in schema_keys(table)}
 
 
-def report_format(units: SystemName | None, *, comma: bool) -> dict[str, Any]:
-    """Return the arguments of `write_report` that ``--output-units`` and ``--decimal-comma`` give."""
-    return {"units": units or "kN", "decimal": "," if comma else "."}
+def report_format(
+    page: Path | None, units: SystemName | None, language: Language | None, *, comma: bool
+) -> dict[str, Any]:
+    """Return the arguments of `write_report` that ``--output-units``, ``--language`` and ``--decimal-comma`` give.
+
+    Raises
+    ------
+    InputError
+        If there is a language but no page to be written in it.
+    """
+    if language is not None and page is None:
+        raise InputError(
+            "--language is that of a report, but none is written. Give the file of a report, or leave it out."
+        )
+    return {"units": units or "kN", "language": language or "en", "decimal": "," if comma else None}
 
 
 @contextmanager
@@ -239,12 +252,16 @@ OutputUnits = Annotated[
     SystemName | None,
     option("--output-units", "|".join(get_args(SystemName)), "Units of tables and reports; inputs stay in SI units."),
 ]
+ReportLanguage = Annotated[
+    Language | None,
+    option("--language", "|".join(get_args(Language)), "Language of the report; tables and messages stay English."),
+]
 DecimalComma = Annotated[
     bool,
     typer.Option(
         "--decimal-comma",
         callback=choose_decimal_comma,
-        help="Write decimal commas in tables and reports, not in --json and the files of --out.",
+        help="Write decimal commas in tables and English reports, not in --json and the files of --out.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print only one JSON document, in SI units.")]

@@ -149,6 +149,9 @@ def report(
         options.option("--structure -s", "NAME", "Report this one, with its checks. Default: compare all."),
     ] = None,
     workers: Workers = None,
+    output_units: options.OutputUnits = None,
+    language: options.ReportLanguage = None,
+    decimal_comma: options.DecimalComma = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier report.")] = False,
 ) -> None:
     """Write the report of all structures side by side, or of one with its values for design and checks."""
@@ -156,7 +159,8 @@ def report(
     from rockflex.project import read_project
 
     page = checked_path_of_report(out, force=force, flag="The report")
-    read_project(file).report(page, structure, workers)
+    written = options.report_format(page, output_units, language, comma=decimal_comma)
+    read_project(file).report(page, structure, workers, **written)
     console.print_remark(f"Written to {page}")
 
 

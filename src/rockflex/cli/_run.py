@@ -54,6 +54,7 @@ def run(
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
     output_units: options.OutputUnits = None,
+    language: options.ReportLanguage = None,
     decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     out: options.Out = None,
@@ -98,6 +99,7 @@ def run(
     if head and report is None:
         raise InputError(f"The {', '.join(head)} of a report was given without --report FILE.")
     page = None if report is None else checked_path_of_report(report, force=force)
+    written = options.report_format(page, output_units, language, comma=decimal_comma)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
@@ -133,6 +135,6 @@ def run(
     print_run_warnings(runs)
     failed = print_failed_runs(runs)
     if page is not None:
-        write_report_of_run(page, loaded, batch, runs, head | options.report_format(output_units, comma=decimal_comma))
+        write_report_of_run(page, loaded, batch, runs, head | written)
     if failed and strict:
         raise typer.Exit(1)

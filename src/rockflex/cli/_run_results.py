@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
+from rockflex._language import translated, use_language
 from rockflex._schema import schema_keys
 from rockflex._shown import number_with_noun, shortened
 from rockflex._units import UnitSystem
@@ -380,8 +381,14 @@ def write_report_of_run(
     """Write the report of a batch of one motion at one scale; `head` replaces what the structure file says."""
     motion, scale = batch.motions[0], batch.scales[0]
     times = "" if scale == 1.0 else f" × {scale:g}"
-    failed = [f"{run.model} could not be solved: {shortened(run.error, _FAILURE)}" for run in runs if run.error]
-    title = f"{loaded.name} under {motion.name or 'a ground motion'}{times}"
+    with use_language(head["language"], head["decimal"]):
+        record = (motion.name or translated("a ground motion")) + times
+        title = translated("{structure} under {record}", structure=loaded.name, record=record)
+        failed = [
+            translated("{model} could not be solved: {error}", model=run.model, error=shortened(run.error, _FAILURE))
+            for run in runs
+            if run.error
+        ]
     given: dict[str, Any] = {"title": title, **loaded.report, **head}
     write_report(
         [run.response for run in runs if run.response is not None],

@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as initially
+from functools import cached_property
 from inspect import Parameter, signature
 from math import isfinite
 from typing import Any
@@ -47,7 +48,7 @@ class StateLayout:
                 raise InputError(f"The number of places of the state {name!r} must be a whole number, not {count!r}.")
         object.__setattr__(self, "parts", tuple(parts.items()))
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of states."""
         return sum(count for _, count in self.parts)

@@ -12,6 +12,7 @@ from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLong
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
+FEWEST = 10  # terms of a series, of which none is looked at: that they end earlier is rare
 SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
@@ -19,6 +20,7 @@ POOR = 1e6  # condition of a mode from which on its part is useless
 MIRRORS = 4  # phases that may have a mirror image yet to come
 # Two threads that prepare at once pass the interpreter's lock to and fro, in every second call of NumPy.
 PREPARING = RLock()
+AT_ONCE = 4096  # entries of rows at several places of a block that fit into the cache, before they are doubled
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
 
@@ -132,7 +134,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         rows=m + k,
         shift=shift,
         halvings=halvings.astype(np.intc),
-        block=np.concatenate((rows_at_samples(rows, changes, 1), padded(changes[-1])), axis=1),
+        block=np.concatenate((rows_at_samples(rows, changes, 1), padded(changes[:, -1])), axis=1),
         step=padded(step),
         moves=padded(moves @ rates),
         now=now,
@@ -140,7 +142,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         slope=rows_at_samples(by_rows(C, rates), changes, 0),
         bend=padded(bend),
         cap=padded(cap),
-        centre=rows_at_samples(centre, changes if most else changes[:1], 0),
+        centre=rows_at_samples(centre, changes if most else changes[:, :1], 0),
         sway=padded(sway),
         jolt=padded(jolt),
         direct=padded(rows[:, :, n, None]),
@@ -241,31 +243,28 @@ def split_fast_modes(A: Array, f: Array, C: Array, h: float) -> Split | None:
     )
 
 
-def state_changes_at_samples(step: Array) -> list[Array]:
+def state_changes_at_samples(step: Array) -> Array:
     """The changes of the states after 0, 1, .. samples, from y, the accelerations at the samples, and 1."""
     S, n, _ = step.shape
-    found = [np.zeros((S, n, n + AHEAD + 2))]
+    found = np.zeros((S, AHEAD + 1, n, n + AHEAD + 2))
+    direct = step[..., [*range(n), -1]]
     for k in range(AHEAD):
-        change = found[-1] + step[..., :n] @ found[-1]
-        change[..., :n] += step[..., :n]
-        change[..., n + k] += step[..., n]
-        change[..., n + k + 1] += step[..., n + 1]
-        change[..., -1] += step[..., n + 2]
-        found.append(change)
+        change = found[:, k] + step[..., :n] @ found[:, k]
+        change[..., [*range(n), -1]] += direct
+        change[..., n + k : n + k + 2] += step[..., n : n + 2]
+        found[:, k + 1] = change
     return found
 
 
-def rows_at_samples(rows: Array, changes: list[Array], first: int) -> Array:
+def rows_at_samples(rows: Array, changes: Array, first: int) -> Array:
     """The rows at the samples from the first on, one sample after another, from the same."""
-    (S, R, _), n = rows.shape, changes[0].shape[1]
-    found = np.zeros((S, up8((len(changes) - first) * R), changes[0].shape[2]))
-    for k in range(first, len(changes)):
-        seen = found[:, (k - first) * R : (k - first + 1) * R]
-        seen[...] = by_rows(rows[..., :n], changes[k])
-        seen[..., :n] += rows[..., :n]
-        seen[..., n + k] += rows[..., n]
-        seen[..., -1] += rows[..., n + 1]
-    return found
+    S, K, n, columns = changes.shape
+    later, places = np.arange(K - first), n + np.arange(first, K)
+    seen = by_rows(rows[:, None, :, :n], changes[:, first:])
+    seen[..., :n] += rows[:, None, :, :n]
+    seen[:, later, :, places] += rows[..., n]
+    seen[..., -1] += rows[:, None, :, n + 1]
+    return padded(seen.reshape(S, -1, columns))
 
 
 def derivative_bound_factors(
@@ -290,18 +289,22 @@ def derivative_bound_factors(
     found = np.concatenate((most, by_rows(most, np.abs(f)), direct), axis=2)
     parts = np.split(found, ends[:2], axis=1)
     scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
-    bend, sway, jolt = (np.minimum(np.nan_to_num(part, nan=VAGUE), VAGUE) for part in scaled)
+    bend, sway, jolt = (np.where(part < VAGUE, part, VAGUE) for part in scaled)  # NaN is vague, too
     return bend, sway, jolt
 
 
 def most_of(rows: Array, A: Array, changes: list[Array], h: float) -> Array:
     """Bounds of the entries of rows · e^{At} within a block."""
     count, rows = rows.shape[1], padded(rows)
-    here, most = rows, np.abs(rows)
-    for _ in range(2 * BLOCK - 1):  # one place after another: a whole grid would not fit into the cache
-        here = here + here @ changes[0]
+    here, change, places = rows[:, None], changes[0][:, None], 1
+    while places < 2 * BLOCK and here[0].size <= AT_ONCE:
+        here = np.concatenate((here, here + here @ change), axis=1)
+        change, places = 2.0 * change + change @ change, 2 * places
+    most = np.abs(here)
+    for _ in range(2 * BLOCK // places - 1):
+        here = here + here @ change
         np.maximum(most, np.abs(here), out=most)
-    return np.asarray(most @ growth(0.5 * h * A, changes))[:, :count]
+    return np.asarray(most.max(axis=1) @ growth(0.5 * h * A, changes))[:, :count]
 
 
 def growth(G: Array, changes: list[Array]) -> Array:
@@ -348,11 +351,12 @@ def exponentials_less_identity(G: Array, halvings: int) -> list[Array]:
     total = term = X
     for k in range(2, 60):
         term = term @ X / k
-        ends = (np.abs(term) <= SMALL * np.abs(total)).all(axis=(1, 2))
-        term[ends] = 0.0  # so that no number of terms depends on the other matrices
+        if k >= FEWEST:
+            ends = (np.abs(term) <= SMALL * np.abs(total)).all(axis=(1, 2))
+            term[ends] = 0.0  # so that no number of terms depends on the other matrices
+            if ends.all():
+                break
         total = total + term
-        if ends.all():
-            break
     found = [total]
     for _ in range(halvings):
         found.append(2.0 * found[-1] + found[-1] @ found[-1])
@@ -363,8 +367,8 @@ def tables_in_row_groups(tables: Array, most: int) -> Array:
     """The tables column after column, in groups of at most so many rows, of nearly the same size."""
     count, rows, _ = tables.shape
     groups = -(-rows // most)
-    if groups == 0:
-        return np.zeros((count, 0))
+    if groups < 2:
+        return tables.transpose(0, 2, 1).reshape(count, -1)
     bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
     parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
     return np.concatenate(parts, axis=1)
@@ -372,7 +376,8 @@ def tables_in_row_groups(tables: Array, most: int) -> Array:
 
 def jump_table(jump: Array, most: int) -> Array:
     """A matrix J and |J|, one after the other, in groups of rows."""
-    return np.concatenate([tables_in_row_groups(padded(each), most) for each in (jump, np.abs(jump))], axis=1)
+    table = tables_in_row_groups(padded(jump), most)
+    return np.concatenate((table, np.abs(table)), axis=1)
 
 
 def padded(table: NDArray[Any]) -> NDArray[Any]:

@@ -1,24 +1,19 @@
 """Loading a study from a file, and running it: here or on a cluster, in memory or in a resumable folder."""
 
-from collections.abc import Callable, Sequence
-from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
+from typing import TYPE_CHECKING, SupportsIndex
 
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex._versions import git_commit, package_versions
-from rockflex.engine import VECTOR_LEVEL
 from rockflex.kinds._study_kinds import study_kind_named
 from rockflex.structure.file import read_toml_file
-from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
-from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
-from rockflex.study.parallel import NumberedChunks, core_count, map_chunks_on_dask
-from rockflex.study.progress import PartProgress, Progress, check_progress, reporting_part_progress
+from rockflex.study import ChunkedPlan, StudySpec, check_place, fill_folder, table_of_plan, tables_to_dataframe
+from rockflex.study.folders import StudyFolder
+from rockflex.study.parallel import core_count
+from rockflex.study.progress import PartProgress, check_progress, reporting_part_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,9 +66,6 @@ def load_study(path: str | Path) -> StudySpec:
         raise InputError(f"{file}: {error}") from error
 
 
-Result = TypeVar("Result")
-
-LIBRARIES = ("rockflex", "numpy", "scipy")  # those that affect the numbers
 MAX_SAMPLE = 48  # largest number of units that an estimate runs
 MAX_SAMPLE_TIME = 2.0  # s after which an estimate stops
 
@@ -131,17 +123,9 @@ def run_study(
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
         return tables_to_dataframe(filled.table())
-    plan, tables = _plan_of_study(_loaded_study(study), workers, dask, progress), dict[int, Any]()
-
-    def keep(number: int, table: Any) -> int:
-        tables[number] = table
-        return table.num_rows
-
-    def so_far() -> "pd.DataFrame":
-        return tables_to_dataframe(*(tables[number] for number in sorted(tables)))
-
-    _compute_chunks(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
-    return so_far()
+    plan = _plan_of_study(_loaded_study(study), workers, dask, progress)
+    with reporting_part_progress(progress, plan.n_chunks) as begin:
+        return table_of_plan(plan, workers, dask, begin)
 
 
 def fill_study(
@@ -189,45 +173,8 @@ def fill_study(
     spec = _loaded_study(study)
     plan = _plan_of_study(spec, workers, dask, progress)
     mine = _share_of_chunks(plan, share)
-    checksums = plan.checksums | spec.checksums()
-    with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, _versions_of_study(spec), checksums, any_version=any_version
-    ) as target:
-
-        def keep(_: int, part: StudyPart) -> int:
-            target.add(part)
-            return part.rows
-
-        def so_far() -> "pd.DataFrame":
-            return tables_to_dataframe(target.table(partial=True))
-
-        def stored(plan: "ChunkedPlan") -> _StudyPartPlan:
-            return _StudyPartPlan(plan, target.maker)
-
-        numbers = [number for number in target.missing() if number in mine]
-        _compute_chunks(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
-    return StudyFolder.load(folder)
-
-
-@dataclass(frozen=True)
-class _StudyPartPlan:
-    """A plan whose chunks are the content of files, so that they are made where they are computed."""
-
-    plan: "ChunkedPlan"
-    maker: PartMaker
-
-    def chunk(self, number: int) -> StudyPart:
-        return self.maker.make(number, self.plan.chunk(number))
-
-
-def _versions_of_study(spec: "StudySpec") -> dict[str, str]:
-    """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
-    commits = {
-        "rockflex commit": git_commit(Path(__file__), known=True),
-        "study commit": None if spec.file is None else git_commit(spec.file, known=False),
-    }
-    found = package_versions(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
-    return found | {name: commit for name, commit in commits.items() if commit is not None}
+    with reporting_part_progress(progress, len(mine)) as begin:
+        return fill_folder(plan, spec, folder, mine, workers, dask, begin, any_version=any_version)
 
 
 def _loaded_study(study: "StudySpec | str | Path") -> "StudySpec":
@@ -238,10 +185,7 @@ def _plan_of_study(
     spec: "StudySpec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress
 ) -> "ChunkedPlan":
     check_progress(progress, "one Progress")
-    if workers is not None and dask is not None:
-        raise InputError(
-            f"workers is for this machine, but {shown(workers)} was given together with the cluster at {dask}."
-        )
+    check_place(workers, dask)
     plan = spec.plan()
     plan.check_work()
     return plan
@@ -258,41 +202,6 @@ def _share_of_chunks(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIn
             "on a Dask cluster if it is long."
         )
     return range(place - 1, plan.n_chunks, count)
-
-
-def _compute_chunks(
-    plan: "ChunkedPlan",
-    numbers: Sequence[int],
-    sent: "Callable[[ChunkedPlan], NumberedChunks[Result]]",
-    keep: Callable[[int, Result], int],
-    so_far: "Callable[[], pd.DataFrame]",
-    workers: SupportsIndex | None,
-    dask: str | None,
-    progress: PartProgress,
-    parts: int | None = None,
-) -> None:
-    """Compute these of `parts` chunks, round by round; `keep` takes each one when it is done, and counts its rows."""
-    total = plan.n_chunks if parts is None else parts
-    done = kept = total - len(numbers)
-    runs = 0
-    with reporting_part_progress(progress) as tell:
-        tell(Progress(total, done, kept, runs))
-        for place, each in enumerate(plan.rounds):
-            missing = [number for number in numbers if number in each]
-            if done == total:
-                break
-            if place:
-                plan = plan.next_round(so_far())
-            work = sent(plan)
-            # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-            coming = (
-                map_chunks(work.chunk, missing, workers) if dask is None else map_chunks_on_dask(work, missing, dask)
-            )
-            with closing(coming):
-                for number, result in coming:
-                    runs += keep(number, result)
-                    done += 1
-                    tell(Progress(total, done, kept, runs))
 
 
 def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> float:

@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import short_number
 from rockflex._shown import shown
+from rockflex._units import Unit, named_unit
 
 PLACE = ("position", "between", "cosine", "height")  # the fields that say where an element acts
 
@@ -82,9 +84,14 @@ class Attachment:
     @property
     def where(self) -> str:
         """Where the element acts, in words."""
+        return self.where_in(named_unit("m"))
+
+    def where_in(self, length: Unit) -> str:
+        """Where the element acts, in words and in a unit of length."""
         if self.between is not None:
-            return "floors {} to {}".format(*self.between)
-        return f"x = {short_number(self.position)} m" if self.height is None else f"z = {short_number(self.height)} m"
+            return translated("floors {lower} to {upper}", lower=self.between[0], upper=self.between[1])
+        axis, place = ("x", self.position) if self.height is None else ("z", self.height)
+        return f"{axis} = {short_number(place / length.size)} {length.name}"
 
     def arm(self, pivot: float, side: int) -> float:
         """Return the distance in m from a pivot on a side, itself at `pivot` from the axis; zero if attached."""

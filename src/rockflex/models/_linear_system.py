@@ -27,7 +27,7 @@ from rockflex.models._elements import (
 from rockflex.models._impact import Restitution, VVELSimplified
 from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
 from rockflex.models._phase import Key
-from rockflex.models._quantities import Quantities, rows_of_quantities
+from rockflex.models._quantities import Quantities, joined_quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
@@ -80,6 +80,11 @@ class LinearSystemBase:
         return {place: self.model.layout.core + k for k, place in enumerate(bars)}
 
     @cached_property
+    def shown(self) -> Quantities:
+        """The quantities and the extremes."""
+        return joined_quantities([self.quantities, self.extremes])
+
+    @cached_property
     def layout(self) -> StateLayout:
         """The states: modes, rotation, slip and heave, each with its rate, and elastic stretches."""
         layout, N = self.model.layout, self.model.properties.n_modes
@@ -89,10 +94,10 @@ class LinearSystemBase:
         return StateLayout(**parts, elastic=len(self.bars))
 
     @cached_property
-    def columns(self) -> list[int]:
+    def columns(self) -> Integers:
         """Where the columns of a row are in the rows of the model."""
         layout, known = self.model.layout, internal_places(self.model.elements)
-        return [*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1]
+        return np.array([*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1])
 
     def taken(self, rows: Array, key: Key) -> Array:
         """Rows of the model over the states, in which a plastic stretch m is δ + e_0 minus the elastic one."""
@@ -105,7 +110,7 @@ class LinearSystemBase:
 
     def stretch_in(self, place: int, key: Key) -> Array:
         """The whole stretch δ + e_0 of a bar: a row."""
-        row = self.stretch(place, key)
+        row = self.stretch(place, key).copy()
         row[-1] += self.model.elements[place].stretches or 0.0
         return row
 
@@ -156,14 +161,8 @@ class LinearSystemBase:
     def still(self, key: Key) -> LinearPhase:
         """The phase of a key while the ground does not move vertically."""
         model, n = self.model, self.layout.size
-        rows = np.vstack(
-            (
-                self.unit(model.layout.rotation),
-                self.taken(rows_of_quantities(model, self.quantities, key), key),
-                self.taken(rows_of_quantities(model, self.extremes, key), key),
-                self.taken(model.lost_support(key), key),
-            )
-        )
+        shown = np.vstack((rows_of_quantities(model, self.shown, key), model.lost_support(key)))
+        rows = np.vstack((self.unit(model.layout.rotation), self.taken(shown, key)))
         rates = self.rates(key)
         events = tuple(self.events(key))
         return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], rows[:, :n], rows[:, n], rows[:, n + 1], events)
@@ -189,11 +188,25 @@ class LinearSystemBase:
 
     def stretch(self, place: int, key: Key) -> Array:
         """The elongation of an element: a row."""
-        return self.model.stretch(place, key[0])[self.columns]
+        return self._stretches(place, key[0])[0]
 
     def stretching(self, place: int, key: Key) -> Array:
         """The rate of the elongation of an element: a row."""
-        return rate_of_elongation_row(self.model.stretch(place, key[0]), self.model.layout)[self.columns]
+        return self._stretches(place, key[0])[1]
+
+    def _stretches(self, place: int, side: int) -> Array:
+        """The elongation of an element and its rate: read-only rows."""
+        known = self._known_stretches.get((place, side))
+        if known is None:
+            row = self.model.stretch(place, side)
+            known = np.array([row, rate_of_elongation_row(row, self.model.layout)])[:, self.columns]
+            known.setflags(write=False)
+            self._known_stretches[place, side] = known
+        return known
+
+    @cached_property
+    def _known_stretches(self) -> dict[tuple[int, int], Array]:
+        return {}
 
     def events(self, key: Key) -> list[Event]:
         """What ends a phase."""
@@ -260,9 +273,9 @@ class LinearSystemBase:
                 if history:
                     begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
-            marks = np.array([each.mark(one) for one in branch.tolist()], dtype=float)  # NaN where there is none
+            marks = np.array([each.mark(model.element_key(key)[1 + place]) for key in keys], dtype=float)[places]
             last = found[:, model.layout.memory + index + each.n_internal - 1]
-            last[:] = np.where(np.isnan(marks), last, marks)
+            last[:] = np.where(np.isnan(marks), last, marks)  # NaN where there is none
         if model.layout.n_internal > internal_count(model.elements):
             more = np.array([model.marks(key) for key in keys])[places]
             found[:, model.layout.memory + internal_count(model.elements) :] = more

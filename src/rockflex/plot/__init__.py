@@ -2,7 +2,7 @@
 
 from rockflex.plot._comparison import draw_alternatives, plot_comparison
 from rockflex.plot._design import plot_design, plot_design_search
-from rockflex.plot._figures import figure_as_png, figure_as_svg, figure_style, save_figure
+from rockflex.plot._figures import figure_as_png, figure_as_svg, figure_style, figures_in_units, save_figure
 from rockflex.plot._fragility import plot_clouds, plot_fragility, plot_ida, plot_stripes
 from rockflex.plot._history import plot_energy, plot_footing, plot_history, plot_spread
 from rockflex.plot._loops import (
@@ -27,6 +27,7 @@ __all__ = [
     "figure_as_png",
     "figure_as_svg",
     "figure_style",
+    "figures_in_units",
     "plot_clouds",
     "plot_comparison",
     "plot_design",

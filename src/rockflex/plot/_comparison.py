@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._checks import checked_instance
+from rockflex._language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import Size
 from rockflex.plot._history import plot_history, response_curves
@@ -59,8 +60,8 @@ def plot_comparison(
     """
     known = checked_instance("comparison", comparison, Comparison)
     if title is None:
-        among = "" if known.n_records == 1 else f", which governs of {known.n_records}"
-        title = figures.literal_text(f"{known.motion.name}{among}")
+        title, n = figures.literal_text(known.motion.name), known.n_records
+        title = title if n == 1 else translated("{record}, which governs of {n}", record=title, n=n)
     labels = [figures.literal_text(name) for name in known.names]
     return plot_history(known.responses, labels, panels=panels, title=title, size=size)
 

@@ -20,11 +20,24 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import is_color_like, to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
 
 from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._language import Language, chosen_language, use_language
+from rockflex._number_format import unit_with_prefix
 from rockflex._shown import shown
+from rockflex._units import (
+    QUANTITIES,
+    Decimal,
+    SystemName,
+    Unit,
+    UnitSystem,
+    checked_unit_system,
+    named_unit,
+    with_decimal_commas,
+)
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
@@ -127,12 +140,20 @@ _SAVED = ("savefig.bbox", "svg.hashsalt", "pdf.fonttype", "path.simplify")  # so
 _DARK_BRIGHTNESS = 0.5  # brightness of a background on which ink is dark
 
 _CHOSEN: ContextVar[tuple[Theme, Size | None]] = ContextVar("chosen", default=("light", None))
+_UNITS: ContextVar[UnitSystem | None] = ContextVar("units", default=None)
 _SIZE: ContextVar[tuple[float, float | None] | None] = ContextVar("size", default=None)
 _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 
 @contextmanager
-def figure_style(theme: Theme = "light", size: Size | None = None) -> Generator[None, None, None]:
+def figure_style(
+    theme: Theme = "light",
+    size: Size | None = None,
+    *,
+    units: SystemName | None = None,
+    language: Language | None = None,
+    decimal: Decimal | None = None,
+) -> Generator[None, None, None]:
     """Draw all figures of a block in a theme and a size; a function's own `size` comes first.
 
     What is set in matplotlib's ``rcParams`` is kept.
@@ -143,11 +164,18 @@ def figure_style(theme: Theme = "light", size: Size | None = None) -> Generator[
         ``"light"``; ``"dark"``, for screens and slides; or ``"journal"``: letters of 8 points, thin axes, no grid.
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+    units
+        Units of responses over time, loops and sets of records: ``"kN"``, ``"MN"``, ``"SI"`` or ``"kip-in"``, as in
+        `write_report`. Default: SI units, of forces with the prefix that suits their size.
+    language
+        Language of the same figures: ``"en"``, ``"de"``, ``"it"``, ``"fr"`` or ``"es"``. Default: English.
+    decimal
+        Decimal sign of numbers, ``"."`` or ``","``. Default: that of the language.
 
     Raises
     ------
     InputError
-        If there is no such theme or size.
+        If there is no such theme, size, system of units, language or sign.
 
     Examples
     --------
@@ -162,11 +190,37 @@ def figure_style(theme: Theme = "light", size: Size | None = None) -> Generator[
             f"theme must be one of {', '.join(map(repr, THEMES))}, but {shown(theme)} was given.", field="theme"
         )
     _figure_size_in_inches(size)
-    token = _CHOSEN.set((theme, size))
+    with use_language(language, decimal), figures_in_units(None if units is None else checked_unit_system(units)):
+        token = _CHOSEN.set((theme, size))
+        try:
+            yield
+        finally:
+            _CHOSEN.reset(token)
+
+
+@contextmanager
+def figures_in_units(units: UnitSystem | None) -> Generator[None, None, None]:
+    """Draw the figures of a block in a system of units; None for those of the block around."""
+    token = _UNITS.set(units or _UNITS.get())
     try:
         yield
     finally:
-        _CHOSEN.reset(token)
+        _UNITS.reset(token)
+
+
+def chosen_units() -> UnitSystem | None:
+    """Return the system of units of figures, if one is chosen."""
+    return _UNITS.get()
+
+
+def axis_unit(quantity: str, largest: float = 0.0, usual: str = "") -> Unit:
+    """Return the unit of an axis: of the chosen system, or the usual one, or of SI with a prefix for the largest."""
+    chosen, base = _UNITS.get(), QUANTITIES[quantity][2]
+    if chosen is not None:
+        return chosen.of(quantity, largest=largest)
+    if usual:
+        return named_unit(usual)
+    return Unit(*unit_with_prefix(largest, base)) if base[0] in "NJP" else Unit(1.0, base)
 
 
 @contextmanager
@@ -201,6 +255,8 @@ def applied_figure_style(size: Size | None = None) -> Generator[None, None, None
                     _invert_figure_colors(figure)
                 for text in figure.findobj(Text) if small and font == usual else ():
                     text.set_fontsize(max(text.get_fontsize(), _LEAST_FONT))  # pyright: ignore
+                if chosen_language()[1] == ",":
+                    _write_decimal_commas(figure)
                 if inches is not None or font != _FONT:
                     _wrap_figure_texts(figure)
 
@@ -371,6 +427,36 @@ def _invert_figure_colors(figure: Figure) -> None:
             new = turned.get(to_hex(color)) if is_color_like(color) and to_rgba(color)[3] else None  # "none" is black
             if new is not None:
                 getattr(artist, f"set_{name}")(new)
+
+
+class _CommaFormatter(Formatter):
+    """Labels of ticks as another formatter writes them, with decimal commas."""
+
+    def __init__(self, written: Formatter) -> None:
+        self.written = written
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return with_decimal_commas(self.written(x, pos))
+
+    def format_ticks(self, values: Any) -> list[str]:
+        return [with_decimal_commas(text) for text in self.written.format_ticks(values)]
+
+    def get_offset(self) -> str:
+        return with_decimal_commas(self.written.get_offset())
+
+    def set_locs(self, locs: Any) -> None:
+        self.written.set_locs(locs)
+
+
+def _write_decimal_commas(figure: Figure) -> None:
+    """Write the numbers at ticks and in texts with decimal commas; names at ticks stay as they are."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            written = axis.get_major_formatter()
+            if isinstance(written, ScalarFormatter | LogFormatter):
+                axis.set_major_formatter(_CommaFormatter(written))
+    for text in figure.findobj(Text):
+        text.set_text(with_decimal_commas(text.get_text()))
 
 
 def _wrap_figure_texts(figure: Figure) -> None:

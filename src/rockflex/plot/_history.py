@@ -13,8 +13,10 @@ from matplotlib.patches import Patch
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._number_format import short_number, unit_with_prefix
+from rockflex._language import translated
+from rockflex._number_format import short_number
 from rockflex._shown import shown
+from rockflex._units import Unit
 from rockflex.modal import RockingProperties, Springs, Tendon
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
@@ -198,11 +200,17 @@ def _usual_line_style(history: History, max_modes: int) -> LineStyle | None:
 
 @dataclass(frozen=True)
 class PanelQuantity:
-    """The quantity of a panel: its name in a `History`, its symbol, and its unit, with a prefix for forces."""
+    """The quantity of a panel: its name in a `History`, symbol, kind among `QUANTITIES`, and label if in words."""
 
     name: str
     symbol: str
-    unit: str
+    kind: str
+    words: str = ""
+
+    @property
+    def label(self) -> str:
+        """Label of an axis, without the unit."""
+        return translated(self.words, symbol=self.symbol) if self.words else translated(self.symbol)
 
     def of(self, history: History) -> Array:
         """Values over time."""
@@ -216,14 +224,14 @@ class PanelQuantity:
 _QUANTITIES = {
     quantity.name: quantity
     for quantity in (
-        PanelQuantity("rotation", "θ", "rad"),
-        PanelQuantity("top_displacement", r"$u_{\mathrm{top}}$, relative", "m"),
-        PanelQuantity("total_top_displacement", r"$u_{\mathrm{top}}$, total", "m"),
-        PanelQuantity("base_moment", r"$M_b$", "N m"),
-        PanelQuantity("base_shear", r"$V_b$", "N"),
-        PanelQuantity("horizontal_reaction", r"$ΣF_x$", "N"),
-        PanelQuantity("slip", "slip", "m"),
-        PanelQuantity("edge_uplift", "rise of edges", "m"),
+        PanelQuantity("rotation", "θ", "rotation"),
+        PanelQuantity("top_displacement", r"$u_{\mathrm{top}}$", "displacement", "{symbol}, relative"),
+        PanelQuantity("total_top_displacement", r"$u_{\mathrm{top}}$", "displacement", "{symbol}, total"),
+        PanelQuantity("base_moment", r"$M_b$", "moment"),
+        PanelQuantity("base_shear", r"$V_b$", "force"),
+        PanelQuantity("horizontal_reaction", r"$ΣF_x$", "force"),
+        PanelQuantity("slip", "slip", "displacement"),
+        PanelQuantity("edge_uplift", "edges", "displacement", "rise of edges"),
     )
 }
 PANELS = tuple(_QUANTITIES)
@@ -251,8 +259,8 @@ def panel_quantities(panels: Sequence[str]) -> list[PanelQuantity]:
     return [_QUANTITIES[name] for name in names]
 
 
-def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[float, str, float]:
-    """Divisor, unit and largest magnitude of an axis, with some room."""
+def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[Unit, float]:
+    """Unit and largest magnitude of an axis, with some room."""
     if quantity.name == "rotation":
         largest = rotation_axis_limit(curves)
     else:
@@ -262,8 +270,8 @@ def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) ->
             else quantity.peak(curve)
             for curve in curves
         )
-    factor, unit = unit_with_prefix(largest, quantity.unit) if quantity.unit[0] == "N" else (1.0, quantity.unit)
-    return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
+    unit = figures.axis_unit(quantity.kind, largest)
+    return unit, _MARGIN * largest / unit.size if largest > 0.0 else 1e-3 / unit.size
 
 
 def draw_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
@@ -271,17 +279,17 @@ def draw_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve],
     lines, peaks = draw_curves(axes, quantity, curves)
     figures.label_panel(axes, mark)
     notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
-    figures.write_notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
+    figures.write_notes_beside(axes, [(translated("peaks"), "#404040"), *notes], 10.0)
     return lines
 
 
 def draw_curves(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
-    factor, unit, limit = quantity_axis_scale(quantity, curves)
-    low = -limit
+    unit, limit = quantity_axis_scale(quantity, curves)
+    factor, low = unit.size, -limit
     if quantity.name == "edge_uplift":  # how far they sink is less than how far they rise
-        low = -_MARGIN * max(*(curve.response.max_edge_settlement for curve in curves), 0.05 * limit)
-    axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
+        low = -_MARGIN * max(*(curve.response.max_edge_settlement / factor for curve in curves), 0.05 * limit)
+    axes.set(ylim=(low, limit), ylabel=unit.heading(quantity.label))
     lines: list[Artist] = []
     peaks: list[str] = []
     for curve in curves:
@@ -296,7 +304,7 @@ def draw_curves(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]
         if curve.overturned:
             axes.axvline(curve.response.end_time, color=style.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
-            _mark_overturning(axes, curve, limit)
+            _mark_overturning(axes, curve, limit, factor)
         peaks.append(_mark_peak(axes, quantity, curve, factor))
     return lines, peaks
 
@@ -318,7 +326,7 @@ def add_legend(
 def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor: float) -> str:
     """Circle the true peak, which may be between two nodes of the curve; return its text."""
     if curve.overturned and quantity.name == "rotation":
-        return f"overturned, {curve.response.end_time:.2f} s"
+        return translated("overturned, {time} s", time=f"{curve.response.end_time:.2f}")
     peak = quantity.peak(curve) / factor
     if peak == 0.0:
         return "0"
@@ -335,12 +343,12 @@ def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor
         [when], [side * peak], "o", color=curve.style.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
-    return f"{short_number(peak)} at {when:.2f} s"
+    return translated("{peak} at {time} s", peak=short_number(peak), time=f"{when:.2f}")
 
 
-def _mark_overturning(axes: Axes, curve: ResponseCurve, limit: float) -> None:
+def _mark_overturning(axes: Axes, curve: ResponseCurve, limit: float, factor: float) -> None:
     """Draw a triangle where the rotation finally leaves the panel."""
-    rotation, time = curve.history.rotation, curve.history.time
+    rotation, time = curve.history.rotation / factor, curve.history.time
     inside = np.flatnonzero(np.abs(rotation) <= limit)
     last = int(inside[-1]) if inside.size else 0
     if last + 1 == time.size:
@@ -417,7 +425,7 @@ def plot_history(
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
             handles = draw_panel(axes, quantity, curves, mark)
         uplifts = shade_uplifts(grid, curves)
-        grid[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
+        grid[-1].set(xlabel=translated("time [s]"), xlim=time_axis_limits(curves))
         figure.align_ylabels()
         add_legend(figure, curves, handles, uplifts, title)
     return figure
@@ -427,13 +435,13 @@ def shade_uplifts(panels: list[Axes], curves: list[ResponseCurve]) -> dict[str, 
     """Shade the uplifts of the most detailed model; return the entry of the legend that names it, if there are any."""
     rocking = [curve for curve in curves if curve.uplifts.size]
     if not rocking:
-        text = "no uplift" if any(curve.lifts for curve in curves) else "fixed base"
+        text = translated("no uplift" if any(curve.lifts for curve in curves) else "fixed base")
         panels[0].text(0.5, 0.75, text, transform=panels[0].transAxes, ha="center", va="center", color="#404040")
         return {}
     main = max(rocking, key=lambda curve: curve.history.model.properties.n_modes)
     for axes in panels:
         _draw_uplift_spans(axes, main, 0.0, 1.0, SHADE, 0.5)
-    name = f"uplifted: {main.label}" if len(curves) > 1 else "uplifted"
+    name = translated("uplifted: {model}", model=main.label) if len(curves) > 1 else translated("uplifted")
     entry: dict[str, Artist] = {name: Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)}
     if len(rocking) == 1:
         return entry
@@ -522,7 +530,8 @@ def plot_spread(
         # A narrow figure has one column: all panels of the first quantity, then of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
-            factor, unit, limit = quantity_axis_scale(quantity, everything)
+            unit, limit = quantity_axis_scale(quantity, everything)
+            factor = unit.size
             for row, (curve, group) in enumerate(zip(curves, groups, strict=True)):
                 axes: Axes = grid[row, column]
                 low, high = _spread_of_histories(quantity, [curve, *group], times)
@@ -530,13 +539,13 @@ def plot_spread(
                 drawn = curve.before_fall
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
-                axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
+                axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=unit.heading(quantity.label))
                 axes.set_title(curve.label, fontsize=figures.scaled_font_size(8.0), loc="left", pad=3.0)
             if column + 1 == len(quantities) or not figures.is_narrow():
-                grid[-1, column].set_xlabel("time [s]")
+                grid[-1, column].set_xlabel(translated("time [s]"))
         figure.align_ylabels()
         handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
-        names = ["nominal", "from the least to the largest of what was varied"]
+        names = [translated("nominal"), translated("from the least to the largest of what was varied")]
         figures.add_legend_above(figure, handles, names, title=response_figure_title(curves, title))
     return figure
 
@@ -601,23 +610,39 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start
-    factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
+    factor, unit = figures.axis_unit("energy", float(np.max(np.abs(supply))))
     time = history.time[drawn]
     with figures.applied_figure_style(size=size):
         figure = figures.new_figure(6.3, 3.4)
         axes = figure.subplots()
         if layers:
             axes.stackplot(
-                time, *(values / factor for _, _, values in layers), labels=[label for label, _, _ in layers],
-                colors=[color for _, color, _ in layers], linewidth=0.0,
+                time, *(values / factor for _, _, values in layers), linewidth=0.0,
+                labels=[label for label, _, _ in layers], colors=[color for _, color, _ in layers],
             )  # fmt: skip
-        axes.plot(time, supply / factor, color=BLACK, linewidth=0.9, label="input" if start == 0.0 else "start + input")
+        axes.plot(
+            time,
+            supply / factor,
+            color=BLACK,
+            linewidth=0.9,
+            label=translated("input" if start == 0.0 else "start + input"),
+        )
         if curve.falls:
-            axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
+            axes.axvline(time[-1], color=BLUE, linestyle=":", label=translated("overturning"))
         axes.set_xlim(float(history.time[0]), float(history.time[-1]))
-        axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
+        axes.set(
+            ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0),
+            xlabel=translated("time [s]"),
+            ylabel=f"{translated('energy')} [{unit}]",
+        )
         motion = figures.literal_text(curve.response.motion)
-        axes.set_title(f"{curve.label} under {motion}, closing error {ledger.closing_error:.1e}")
+        title = translated(
+            "{model} under {record}, closing error {error}",
+            model=curve.label,
+            record=motion,
+            error=f"{ledger.closing_error:.1e}",
+        )
+        axes.set_title(title)
         handles, _ = axes.get_legend_handles_labels()
         figures.add_legend_beside(figure, handles[::-1])
     return figure
@@ -627,17 +652,19 @@ def _energy_layers(history: History, released: float, settled: float) -> list[tu
     """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
     ledger, elements = history.energy, history.model.properties.elements
     only_tendons = all(isinstance(each, Tendon) for each in elements)
+    taken = translated("yield of tendons" if only_tendons else "taken by elements")
+    stored = translated("tendons" if only_tendons else "stored in elements")
     return [
-        ("damped", GRAY, ledger.damped),
-        ("lost in impacts", RED, ledger.lost),
-        ("yield of tendons" if only_tendons else "taken by elements", figures.YELLOW, ledger.elements.sum(axis=1)),
-        ("friction of the base", BROWN, ledger.friction),
-        ("damped by the ground", SAND, ledger.soil.sum(axis=1)),
-        ("raised weight", GREEN, ledger.gravity + settled),
-        ("compressed ground", CLAY, ledger.soil_strain),
-        ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + released),
-        ("strain", SKY, ledger.strain),
-        ("kinetic", ORANGE, ledger.kinetic),
+        (translated("damped"), GRAY, ledger.damped),
+        (translated("lost in impacts"), RED, ledger.lost),
+        (taken, figures.YELLOW, ledger.elements.sum(axis=1)),
+        (translated("friction of the base"), BROWN, ledger.friction),
+        (translated("damped by the ground"), SAND, ledger.soil.sum(axis=1)),
+        (translated("raised weight"), GREEN, ledger.gravity + settled),
+        (translated("compressed ground"), CLAY, ledger.soil_strain),
+        (stored, PURPLE, ledger.element_strain + released),
+        (translated("strain"), SKY, ledger.strain),
+        (translated("kinetic"), ORANGE, ledger.kinetic),
     ]
 
 
@@ -694,12 +721,13 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
         _draw_base_contact(contact, history, springs)
         for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
             figures.label_panel(axes, mark)
-        contact.set_xlabel("time [s]")
+        contact.set_xlabel(translated("time [s]"))
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
         edges.set_title(
-            figures.literal_text(curve.label)
-            + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
+            translated("{structure} under {record}", structure=curve.label, record=given)
+            if (given := response_figure_title(curves, title))
+            else curve.label
         )
     return figure
 
@@ -713,10 +741,12 @@ def tributary_shares(springs: Springs, p: RockingProperties) -> Array:
 
 
 def _draw_base_edges(axes: Axes, history: History) -> None:
-    for values, name, color in zip(1e3 * history.edge_uplift.T, ("left", "right"), (BLUE, RED), strict=True):
-        axes.plot(history.time, values, color=color, linewidth=0.9, label=f"{name} edge")
+    unit = figures.axis_unit("displacement", usual="mm")
+    names = (translated("left edge"), translated("right edge"))
+    for values, name, color in zip(history.edge_uplift.T / unit.size, names, (BLUE, RED), strict=True):
+        axes.plot(history.time, values, color=color, linewidth=0.9, label=name)
     axes.axhline(0.0, color=GRAY, linewidth=0.7)
-    axes.set_ylabel("rise of edges [mm]")
+    axes.set_ylabel(unit.heading(translated("rise of edges")))
     axes.legend(loc="upper right", ncols=2)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend
@@ -724,12 +754,14 @@ def _draw_base_edges(axes: Axes, history: History) -> None:
 
 def _draw_soil_pressure(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
     area = springs.area
-    name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
-    factor, unit = unit_with_prefix(float(pushes.max()), "N" if area is None else "Pa")
-    places = springs.positions
+    pushes = history.spring_force if area is None else history.soil_pressure
+    name = translated("force" if area is None else "pressure")
+    factor, unit = figures.axis_unit("force" if area is None else "stress", float(pushes.max()))
+    across, length = figures.axis_unit("length")
+    places = springs.positions / across
     if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _SPRING_COLORS, strict=False):
-            axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {place:.3g} m".replace("-", "−"))
+            axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {short_number(place)} {length}")
         axes.set_ylabel(f"{name} [{unit}]")
         axes.legend(loc="upper right", ncols=places.size)
         axes.set_ylim(0.0, 1.25 * float(pushes.max()) / factor)
@@ -738,7 +770,7 @@ def _draw_soil_pressure(figure: Figure, axes: Axes, history: History, springs: S
     shown = np.ma.masked_less_equal(pushes[distinct].T / factor, 0.0)
     mesh = axes.pcolormesh(history.time[distinct], places, shown, cmap="YlOrBr", shading="nearest", rasterized=True)
     mesh.set_clim(0.0)
-    axes.set_ylabel("x [m]")
+    axes.set_ylabel(f"x [{length}]")
     axes.grid(visible=False)
     figure.colorbar(mesh, ax=axes, label=f"{name} [{unit}]", pad=0.01)
 
@@ -747,4 +779,4 @@ def _draw_base_contact(axes: Axes, history: History, springs: Springs) -> None:
     contact_share = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
     axes.fill_between(history.time, 100.0 * contact_share, color=GRAY, alpha=0.5, linewidth=0.0)
     axes.plot(history.time, 100.0 * contact_share, color=BLACK, linewidth=0.7)
-    axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")
+    axes.set(ylim=(0.0, 104.0), ylabel=translated("in contact [%]"))

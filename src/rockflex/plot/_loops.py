@@ -18,6 +18,7 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import short_number, unit_with_prefix
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
@@ -148,7 +149,8 @@ def _element_name(elements: Sequence[modal.BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
     words = element.words if isinstance(element, modal.ElementLaw) else _ELEMENT_NAMES[type(element)]
-    return f"{place + 1} {words}, {element.where}"
+    where = element.where_in(figures.axis_unit("length"))
+    return f"{place + 1} {translated(words)}, {where}"
 
 
 def plot_loops(
@@ -223,34 +225,42 @@ def plot_loops(
 
 def _draw_base_loop(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
-    factor, unit = unit_with_prefix(max(map(abs, (*moment, 0.0))), "N m")
-    axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
+    factor, unit = figures.axis_unit("moment", max(map(abs, (*moment, 0.0))))
+    turn = figures.axis_unit("rotation")
+    rotation = loops.rotation / turn.size
+    axes.plot(rotation, moment / factor, color=BLACK, linewidth=1.4, label=translated("total"), zorder=3.0)
     if loops.elements or loops.springs is not None:
-        axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
+        axes.plot(rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label=translated("weight"))
     if loops.springs is not None:
-        axes.plot(loops.rotation, loops.springs / factor, color=BLUE, linewidth=0.9, label="springs")
+        axes.plot(rotation, loops.springs / factor, color=BLUE, linewidth=0.9, label=translated("springs"))
     for place, part in enumerate(loops.parts.T):
         color, name = _COLORS[place % len(_COLORS)], _element_name(loops.elements, place)
-        axes.plot(loops.rotation, part / factor, color=color, linewidth=0.9, label=name)
-    axes.set(xlabel="θ [rad]", ylabel=f"M [{unit}]")
+        axes.plot(rotation, part / factor, color=color, linewidth=0.9, label=name)
+    axes.set(xlabel=turn.heading("θ"), ylabel=f"M [{unit}]")
     axes.locator_params(axis="x", nbins=6)
 
 
 def _draw_edge_loops(axes: Axes, loops: BaseLoops) -> None:
     edges = cast("Array", loops.edges)
+    unit, turn = figures.axis_unit("displacement", usual="mm"), figures.axis_unit("rotation")
+    names = (translated("left"), translated("right"))
     axes.axhline(0.0, color=GRAY, linewidth=0.6, label="_level")
-    for edge, style, name in zip(edges.T, ("-", (0, (4, 2))), ("left", "right"), strict=True):
-        axes.plot(loops.rotation, 1e3 * edge, color=BLUE, linestyle=style, linewidth=1.1, label=name)
-    axes.set(title="edges of the base", xlabel="θ [rad]", ylabel="rise [mm]")
+    for edge, style, name in zip(edges.T / unit.size, ("-", (0, (4, 2))), names, strict=True):
+        axes.plot(loops.rotation / turn.size, edge, color=BLUE, linestyle=style, linewidth=1.1, label=name)
+    labels = {"xlabel": turn.heading("θ"), "ylabel": unit.heading(translated("rise"))}
+    axes.set(title=translated("edges of the base"), **labels)
     axes.locator_params(axis="x", nbins=4)
     axes.legend(handlelength=2.0)
 
 
 def _draw_element_loop(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
-    factor, unit = unit_with_prefix(max(map(abs, (*force, 0.0))), "N")
-    axes.plot(loops.elongation[:, place], force / factor, color=_COLORS[place % len(_COLORS)], linewidth=1.1)
-    axes.set(title=_element_name(loops.elements, place), xlabel="δ [m]", ylabel=f"F [{unit}]")
+    factor, unit = figures.axis_unit("force", max(map(abs, (*force, 0.0))))
+    across = figures.axis_unit("displacement")
+    axes.plot(
+        loops.elongation[:, place] / across.size, force / factor, color=_COLORS[place % len(_COLORS)], linewidth=1.1
+    )
+    axes.set(title=_element_name(loops.elements, place), xlabel=across.heading("δ"), ylabel=f"F [{unit}]")
     axes.locator_params(axis="x", nbins=4)
 
 
@@ -367,7 +377,7 @@ def plot_yielding(
             histories.draw_panel(axes, quantity, curves, mark)
         histories.shade_uplifts(panels, curves)
         top.tick_params(labelbottom=False)
-        panels[1].set(xlabel="time [s]", xlim=(0.0, histories.time_axis_limits(curves)[1]))
+        panels[1].set(xlabel=translated("time [s]"), xlim=(0.0, histories.time_axis_limits(curves)[1]))
         loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
         figures.label_panel(loops, "C")
@@ -379,17 +389,17 @@ def plot_yielding(
 def _draw_hysteresis(axes: Axes, curves: list[ResponseCurve]) -> list[Artist]:
     """Fill a panel with V_b over u_top; return a line for each curve."""
     displacement, force = histories.panel_quantities(("top_displacement", "base_shear"))
-    _, across, right = histories.quantity_axis_scale(displacement, curves)
-    factor, unit, high = histories.quantity_axis_scale(force, curves)
+    across, right = histories.quantity_axis_scale(displacement, curves)
+    unit, high = histories.quantity_axis_scale(force, curves)
     axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
-    axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
+    axes.set(xlabel=across.heading(displacement.label), ylabel=unit.heading(force.label))
     lines: list[Artist] = []
     for curve in curves:
         drawn = curve.before_fall
         lines += axes.plot(
-            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, **curve.style.look,
-            linewidth=curve.style.width, label=curve.label, zorder=curve.order,
+            displacement.of(curve.history)[drawn] / across.size, force.of(curve.history)[drawn] / unit.size,
+            **curve.style.look, linewidth=curve.style.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
     return lines
 
@@ -445,24 +455,27 @@ def plot_moment_rotation(
         )
     rotation = _LIMIT * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
-    factor, unit = unit_with_prefix(largest, "N m")
+    factor, unit = figures.axis_unit("moment", largest)
+    turn = figures.axis_unit("rotation")
     with figures.applied_figure_style(size=size):
         columns = 1 if figures.is_narrow() else min(len(curves), _RUNS_PER_ROW)
         rows = math.ceil(len(curves) / columns)
         figure = figures.new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
-        panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
+        right, high = rotation / turn.size, _LIMIT * largest / factor
+        panels[0].set(xlim=(-right, right), ylim=(-high, high))
         panels[0].locator_params(axis="x", nbins=5)
         for axes, curve in zip(panels, curves, strict=False):
             moment = curve.history.base_moment / factor
-            axes.plot(curve.history.rotation, moment, color=curve.style.color, linewidth=0.8, label=curve.label)
-            axes.add_line(resisting_moment_line(curve, rotation, factor))
+            theta = curve.history.rotation / turn.size
+            axes.plot(theta, moment, color=curve.style.color, linewidth=0.8, label=curve.label)
+            axes.add_line(resisting_moment_line(curve, rotation, factor, turn.size))
             axes.set_title(curve.label)
             axes.tick_params(labelbottom=True)
         for axes in panels[len(curves) :]:
             axes.set_axis_off()
-        figure.supxlabel("θ [rad]", fontsize="medium")
+        figure.supxlabel(turn.heading("θ"), fontsize="medium")
         figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
         figures.add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
@@ -485,15 +498,15 @@ def largest_base_moment_on_axes(curve: ResponseCurve) -> float:
     return max(moment, held, *(pivot.resisting_moment for pivot in p.pivots))
 
 
-def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float) -> Line2D:
+def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float, turn: float) -> Line2D:
     model, p = curve.history.model, curve.history.model.properties
     if not is_moment_path_independent(p):
         loops = _loops_of_run(curve)
-        label = "resisting moment of weight and elements"
-        return Line2D(loops.rotation, loops.moment / factor, color=BLUE, linewidth=0.8, label=label, zorder=3.0)
+        label = translated("resisting moment of weight and elements")
+        return Line2D(loops.rotation / turn, loops.moment / factor, color=BLUE, linewidth=0.8, label=label, zorder=3.0)
     if model.springs is not None:
         push = static_path(p, np.array([rotation, -rotation]), model.springs, model.rest)
-        theta, moment, law = push.rotation, push.moment / factor, "on the springs"
+        theta, moment, label = push.rotation, push.moment / factor, translated("static, on the springs")
     else:
         right, left = (
             (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
@@ -501,8 +514,9 @@ def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float) 
         )
         theta, moment = [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right]
         law = _WITHOUT_TENDONS if p.symmetric and not p.tendons else _WITH_TENDONS
-        law += "" if p.symmetric else " of each side"
-    return Line2D(theta, moment, color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1, label=f"static, {law}", zorder=3.0)
+        label = translated("static, {law}" if p.symmetric else "static, {law} of each side", law=law)
+    theta = np.asarray(theta) / turn
+    return Line2D(theta, moment, color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1, label=label, zorder=3.0)
 
 
 def plot_moment_rotation_laws(

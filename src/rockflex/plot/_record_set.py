@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from rockflex._checks import checked_instance
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import unit_with_prefix
 from rockflex._shown import few_texts_shown, shortened
 from rockflex._units import KN
@@ -23,7 +24,7 @@ LINES = {
     "median": (GREEN, "--", 1.2, "median"),
     "fractile_84": (ORANGE, ":", 1.6, "84 % fractile"),
 }
-_LABELS = {
+LABELS = {
     "max_rotation": r"$\theta_{\max}$",
     "max_top_displacement": "$u_{top}$",
     "max_total_top_displacement": "total $u_{top}$",
@@ -96,21 +97,24 @@ def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
     values, fallen = found.peaks[name].to_numpy(float), found.fallen
     row: Any = found.statistics.loc[name]
     stands = values[~fallen]
-    size, unit = DEMANDS[name].unit_in(KN)
-    if unit.startswith("kN"):
+    chosen = figures.chosen_units()
+    size, unit = DEMANDS[name].unit_in(chosen or KN)
+    if chosen is None and unit.startswith("kN"):
         size, unit = unit_with_prefix(float(abs(stands).max(initial=0.0)), unit.removeprefix("k"))
     places = [place for place, fell in enumerate(fallen) if not fell]
     axes.hlines(places, 0.0, stands / size, color=GRAY, linewidth=0.6)
     for column, (color, dashes, width, label) in LINES.items():
         if math.isfinite(row[column]):
-            axes.axvline(row[column] / size, color=color, linestyle=dashes, linewidth=width, label=label)
-    axes.plot(stands / size, places, color=GRAY, marker="o", markersize=2.5, linestyle="none", label="record")
+            axes.axvline(row[column] / size, color=color, linestyle=dashes, linewidth=width, label=translated(label))
+    axes.plot(
+        stands / size, places, color=GRAY, marker="o", markersize=2.5, linestyle="none", label=translated("record")
+    )
     if fallen.any():
         axes.plot(
             [0.97] * int(fallen.sum()), [place for place, fell in enumerate(fallen) if fell], color=RED, marker="x",
-            markersize=4.0, linestyle="none", transform=axes.get_yaxis_transform(), label="overturns",
+            markersize=4.0, linestyle="none", transform=axes.get_yaxis_transform(), label=translated("overturns"),
         )  # fmt: skip
-    axes.set_xlabel(f"{_LABELS.get(name, DEMANDS[name].symbol)} [{unit}]")
+    axes.set_xlabel(f"{translated(LABELS.get(name, DEMANDS[name].symbol))} [{unit}]")
     axes.margins(x=0.12)
     axes.set_xlim(min(0.0, axes.get_xlim()[0]) if stands.min(initial=0.0) < 0.0 else 0.0)
     axes.set_ylim(len(values) - 0.5, -0.5)

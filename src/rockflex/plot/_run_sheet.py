@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex._number_format import unit_with_prefix
+from rockflex._language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import ResponseCurve
@@ -19,6 +19,7 @@ from rockflex.response import Response
 _MM = 1.0 / 25.4  # inches
 _MARGIN = 1.08
 _MIN_PANEL_MM = 26.0  # mm of height that a panel needs
+_ONE_LINE_MM = 40.0  # mm of height in which every label has room in one line
 _MIN_PANELS = 3  # panels in any case
 _MAX_LAW_POINTS = 500  # points of a line that is a path, not a law
 
@@ -52,14 +53,16 @@ def draw_run_sheet(
             axes = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
             handles, _ = histories.draw_curves(axes, quantity, curves)
             _label_inside_panel(axes, mark)
-            axes.set_ylabel(
-                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=figures.scaled_font_size(8.0)
-            )
+            unit, _ = histories.quantity_axis_scale(quantity, curves)
+            room = height / len(quantities)
+            label = unit.heading(quantity.label if room > _MIN_PANEL_MM else translated(quantity.symbol))
+            lines = label.replace(" [", "\n[") if room < _ONE_LINE_MM else label
+            axes.set_ylabel(lines, fontsize=figures.scaled_font_size(8.0))
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
         uplifts = histories.shade_uplifts(panels, curves)
-        panels[-1].set(xlabel="time [s]", xlim=histories.time_axis_limits(curves))
+        panels[-1].set(xlabel=translated("time [s]"), xlim=histories.time_axis_limits(curves))
         figure.align_ylabels(panels)
         if loops:
             _draw_moment_rotation_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
@@ -68,18 +71,20 @@ def draw_run_sheet(
 
 
 def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
-    """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
-    largest = float(np.max(np.abs(acceleration))) or 1.0
+    """Draw a ground acceleration, given in m/s², over the time in s, `width` by `height` mm."""
+    unit = figures.axis_unit("acceleration")
+    shaking = acceleration / unit.size
+    largest = float(np.max(np.abs(shaking))) or 1.0
     with figures.applied_figure_style():
         figure = figures.new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
-        axes.plot(time, acceleration, color=figures.BLACK, linewidth=0.5)
+        axes.plot(time, shaking, color=figures.BLACK, linewidth=0.5)
         axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_MARGIN * largest, _MARGIN * largest))
         axes.locator_params(axis="y", nbins=4)
         axes.tick_params(labelsize=figures.SMALL)
-        axes.set_xlabel("time [s]", fontsize=figures.SMALL, labelpad=1.0)
-        axes.set_ylabel("$a_g$ [m/s²]", fontsize=figures.SMALL, labelpad=1.0)
+        axes.set_xlabel(translated("time [s]"), fontsize=figures.SMALL, labelpad=1.0)
+        axes.set_ylabel(unit.heading("$a_g$"), fontsize=figures.SMALL, labelpad=1.0)
     return figure
 
 
@@ -103,35 +108,29 @@ def _run_sheet_panels(curves: list[ResponseCurve], height: float) -> list[str]:
     return names
 
 
-def _short_axis_label(label: str, room: float) -> str:
-    """Return the label of an axis, without its qualifier where the panel is lower than `room` mm."""
-    if room > _MIN_PANEL_MM:
-        return label
-    return label.replace(", total", "").replace(", relative", "").replace("rise of ", "")
-
-
 def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: str) -> None:
     """Draw base moment over rotation, and the static resisting moment."""
     rotation = _MARGIN * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     (moment,) = histories.panel_quantities(["base_moment"])
-    largest = max(
-        largest_base_moment_on_axes(curves[0]),
-        histories.quantity_axis_scale(moment, curves)[2] * histories.quantity_axis_scale(moment, curves)[0] / _MARGIN,
-    )
-    factor, unit = unit_with_prefix(largest, "N m")
+    unit, limit = histories.quantity_axis_scale(moment, curves)
+    largest = max(largest_base_moment_on_axes(curves[0]), limit * unit.size / _MARGIN)
+    factor, unit = figures.axis_unit("moment", largest)
+    turn = figures.axis_unit("rotation")
     for curve in curves:
         until_fall = curve.before_fall
         axes.plot(
-            curve.history.rotation[until_fall], curve.history.base_moment[until_fall] / factor, color=curve.style.color,
-            linestyle=curve.style.dashes, linewidth=0.8 * curve.style.width, zorder=curve.order,
+            curve.history.rotation[until_fall] / turn.size, curve.history.base_moment[until_fall] / factor,
+            **curve.style.look, linewidth=0.8 * curve.style.width, zorder=curve.order,
         )  # fmt: skip
-    line = resisting_moment_line(curves[0], rotation, factor)
+    line = resisting_moment_line(curves[0], rotation, factor, turn.size)
     line.set(linewidth=0.9 if len(line.get_xdata()) < _MAX_LAW_POINTS else 0.5, zorder=1.8)  # pyright: ignore[reportArgumentType]
     axes.add_line(line)
     limit = _MARGIN * largest / factor
-    axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
+    right = rotation / turn.size
+    axes.set(xlim=(-right, right), ylim=(-limit, limit), xlabel=turn.heading("θ"), ylabel=f"$M_b$ [{unit}]")
     axes.locator_params(axis="x", nbins=4)
-    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=figures.SMALL, loc="right")
+    title = translated("$M_b$ over θ; blue: resisting moment\nof {model}", model=curves[0].label)
+    axes.set_title(title, fontsize=figures.SMALL, loc="right")
     _label_inside_panel(axes, mark)
 
 

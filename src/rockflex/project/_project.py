@@ -9,8 +9,10 @@ from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._html import HtmlTable
+from rockflex._language import Language
 from rockflex._schema import ReportKeys, schema_keys
 from rockflex._shown import number_with_noun, shown
+from rockflex._units import Decimal, SystemName
 from rockflex._values import Value
 from rockflex._versions import package_versions
 from rockflex.modal import Ground, RockingProperties
@@ -23,6 +25,7 @@ from rockflex.report.run import checked_report_path
 from rockflex.response import CheckLimits, Comparison, RecordSet, Rule, check, checked_rule
 from rockflex.study import (
     MAX_ALTERNATIVES,
+    WORK_LIMIT,
     Motions,
     RockingStructure,
     checked_motions,
@@ -238,8 +241,10 @@ class Project(HtmlTable, Value):
             workers=workers,
         )
 
-    def comparison(self, workers: SupportsIndex | None = None) -> Comparison:
+    def comparison(self, workers: SupportsIndex | None = None, work_limit: float | None = WORK_LIMIT) -> Comparison:
         """Return what `compare` returns for all structures, of which there must be two at least.
+
+        `workers` and `work_limit` are as there.
 
         Raises
         ------
@@ -257,6 +262,7 @@ class Project(HtmlTable, Value):
             impact=self.impact,
             ground=self.ground,
             workers=workers,
+            work_limit=work_limit,
         )
 
     def run(self, workers: SupportsIndex | None = None) -> "Project":
@@ -287,7 +293,16 @@ class Project(HtmlTable, Value):
         version = package_versions(("rockflex",))["rockflex"]
         return replace(self, results=ProjectResults(**made, inputs=self.inputs, version=version))
 
-    def report(self, path: str | Path, structure: str | None = None, workers: SupportsIndex | None = None) -> Path:
+    def report(
+        self,
+        path: str | Path,
+        structure: str | None = None,
+        workers: SupportsIndex | None = None,
+        *,
+        units: SystemName = "kN",
+        language: Language = "en",
+        decimal: Decimal | None = None,
+    ) -> Path:
         """Write the report of a structure: peaks by record, values for design, checks; or of all side by side.
 
         Parameters
@@ -298,6 +313,8 @@ class Project(HtmlTable, Value):
             Name of a structure. Default: all, compared with the first, or the only one.
         workers
             Number of threads; None for one a core.
+        units, language, decimal
+            Units, language and decimal sign, as in `write_report`.
 
         Returns
         -------
@@ -312,7 +329,7 @@ class Project(HtmlTable, Value):
             If a run cannot be solved.
         """
         checked_report_path("path", path)  # before anything is simulated
-        head: dict[str, Any] = dict(self.head)
+        head: dict[str, Any] = {**self.head, "units": units, "language": language, "decimal": decimal}
         if structure is None and len(self.structures) > 1:
             return write_report(self.comparison(workers), path, **head)
         name = self._checked_name(structure)

@@ -1,7 +1,7 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._comparison import STATISTICS, Comparison
-from rockflex.response._demands import DEMANDS
+from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
@@ -46,6 +46,7 @@ __all__ = [
     "BALANCED",
     "BY_STORY",
     "DEMANDS",
+    "DEMANDS_BY_RECORD",
     "GLOBAL",
     "IMPACT_WINDOW",
     "MAX_OF_STORIES",

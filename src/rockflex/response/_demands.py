@@ -41,6 +41,10 @@ DEMANDS: Mapping[str, Demand] = {
 """All demands by name; all but two, of floors, are the scalars of a `Response`."""
 
 ONLY_COMPARED = ("balance_ratio", "tendon_utilisation", "residual_rotation")
+DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment",
+                     "max_base_shear", "min_vertical_reaction")  # fmt: skip
+"""The demands that tables show for each record of a set."""
+
 COMPARED_DEMANDS = (
     "max_rotation", "balance_ratio", "max_top_displacement", "max_total_top_displacement", "max_story_drift",
     "max_floor_acceleration", "max_base_shear", "max_base_moment", "tendon_utilisation", "max_edge_uplift",

@@ -62,6 +62,7 @@ class Friction:
         self._model = model
         self._states = states
         self._printed = printed
+        self._required: dict[float, float] = {}  # by window: finding it takes long, and checks ask again
         self._rates = accelerations_at_states(model, states)
         self._linear = None if model.bouc_wen is not None else MotionBetween(model)
         p = model.properties
@@ -88,6 +89,11 @@ class Friction:
             If the window is negative or not finite, or the model is too fast for the sampling.
         """
         window = checked_positive("window", window, "s", zero=True)
+        if window not in self._required:
+            self._required[window] = self._required_after(window)
+        return self._required[window]
+
+    def _required_after(self, window: float) -> float:
         if not self._stretches.size:
             return float(self.demand.max())
         start = self._after(window)

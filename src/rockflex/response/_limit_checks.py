@@ -11,6 +11,7 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_in_range, checked_instance, checked_positive
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._shown import number_with_noun, shown
 from rockflex._units import UnitSystem
 from rockflex._values import Value
@@ -143,6 +144,9 @@ class Check:
         return None if self.ratio is None else self.ratio <= 1.0
 
 
+USER, YIELD_FORCE, RUPTURE = "user", "yield force of the tendon", "elongation at which the element breaks"
+NOMINAL_LIMIT = "0.7 atan(B/h*_1), Silva & Stojadinović 2024, Section 3.3"
+SOURCES = (USER, YIELD_FORCE, RUPTURE, NOMINAL_LIMIT)  # of limits
 NO_LIMIT = "no limit: give"  # begins what a check lacks that only needs its limit
 _QUANTITIES = {"": "ratio", "rad": "rotation", "m": "displacement", "Pa": "stress"}
 
@@ -264,7 +268,7 @@ class Limit(NamedTuple):
     """A limit and its source."""
 
     value: float | None
-    source: str = "user"
+    source: str = USER
 
 
 @dataclass(frozen=True)
@@ -285,7 +289,9 @@ def _user(*names: str) -> Callable[[History, CheckLimits], Limit]:
     def limit(_: History, limits: CheckLimits) -> Limit:
         for name in names:
             if getattr(limits, name) is None:
-                raise MissingQuantityError(f"{NO_LIMIT} {name}" if name == names[0] else f"give {name}")
+                raise MissingQuantityError(
+                    f"{NO_LIMIT} {name}" if name == names[0] else translated("give {name}", name=name)
+                )
         return Limit(getattr(limits, names[0]))
 
     return limit
@@ -293,20 +299,23 @@ def _user(*names: str) -> Callable[[History, CheckLimits], Limit]:
 
 def _check_lifts(history: History) -> None:
     if not history.model.lifts:
-        raise MissingQuantityError("the base is fixed")
+        raise MissingQuantityError(translated("the base is fixed"))
 
 
 def _uplift_remark(runs: tuple[Response, ...]) -> Iterator[str]:
     lifting, n = sum(run.status != "no_uplift" for run in runs), len(runs)
     if n > 1:
-        yield f"the base lifts in {lifting} of {n} records"
+        yield translated("the base lifts in {k} of {n} records", k=lifting, n=n)
+    elif lifting:
+        impacts = runs[0].n_impacts
+        yield translated("the base lifts, {n} impact" if impacts == 1 else "the base lifts, {n} impacts", n=impacts)
     else:
-        yield f"the base lifts, {number_with_noun(runs[0].n_impacts, 'impact')}" if lifting else "the base stays closed"
+        yield translated("the base stays closed")
 
 
 def _moment_over_resisting(run: Response, history: History, _: CheckLimits) -> float:
     if not history.model.properties.n_modes:
-        raise MissingQuantityError("a rigid block has no elastic forces")
+        raise MissingQuantityError(translated("a rigid block has no elastic forces"))
     return run.max_base_moment / history.model.properties.resisting_moment
 
 
@@ -317,38 +326,38 @@ def _rotation(run: Response, history: History, _: CheckLimits) -> float:
 
 def _nominal_rotation(history: History, _: CheckLimits) -> Limit:
     limit = history.model.properties.nominal_overturning_rotation
-    return Limit(limit, "0.7 atan(B/h*_1), Silva & Stojadinović 2024, Section 3.3")
+    return Limit(limit, NOMINAL_LIMIT)
 
 
 def _rotation_over_balance(run: Response, history: History, _: CheckLimits) -> float:
     _check_lifts(history)
     if all(math.isinf(each.balance_rotation) for each in history.model.properties.pivots):
-        raise MissingQuantityError("tendons keep the static moment from vanishing, so there is no α")
+        raise MissingQuantityError(translated("tendons keep the static moment from vanishing, so there is no α"))
     return run.balance_ratio
 
 
 def _drift_ratio(run: Response, history: History, _: CheckLimits) -> float:
     floors = history.model.properties.floors
     if run.floors is None or floors is None:
-        raise MissingQuantityError("the structure has no floors")
+        raise MissingQuantityError(translated("the structure has no floors"))
     heights = np.diff(floors.heights, prepend=0.0)
     if heights.min() <= 0.0:
-        raise MissingQuantityError("the floors do not stand one above another, so stories have no height")
+        raise MissingQuantityError(translated("the floors do not stand one above another, so stories have no height"))
     return float((run.floors.story_drift / heights).max())
 
 
 def _tendon_ratio(run: Response, history: History, _: CheckLimits) -> float:
     if not history.model.properties.tendons:
-        raise MissingQuantityError("there are no tendons")
+        raise MissingQuantityError(translated("there are no tendons"))
     if math.isnan(run.tendon_utilisation):
-        raise MissingQuantityError("give the tendons their yield_force")
+        raise MissingQuantityError(translated("give the tendons their yield_force"))
     return run.tendon_utilisation
 
 
 def _fuse_strain(run: Response, history: History, limits: CheckLimits) -> float:
     fuses = [isinstance(each, YieldingDissipator) for each in history.model.properties.elements]
     if not any(fuses):
-        raise MissingQuantityError("there are no fuses")
+        raise MissingQuantityError(translated("there are no fuses"))
     assert limits.fuse_length is not None
     return float(run.max_element_elongation[fuses].max()) / limits.fuse_length
 
@@ -357,7 +366,7 @@ def _rupture_ratio(run: Response, history: History, _: CheckLimits) -> float:
     ends = [getattr(each, "rupture_elongation", None) for each in history.model.properties.elements]
     ratios = [float(run.max_element_elongation[k]) / end for k, end in enumerate(ends) if end is not None]
     if not ratios:
-        raise MissingQuantityError("no element breaks at an elongation")
+        raise MissingQuantityError(translated("no element breaks at an elongation"))
     return max(ratios)
 
 
@@ -370,11 +379,15 @@ def _distance_to_edge(history: History) -> tuple[Array, Array]:
     p = history.model.properties
     if np.any(history.side != 0.0):
         raise MissingQuantityError(
-            "on rigid ground a base that lifts stands on its edge, where no length and no pressure is defined. Give "
-            "simulate a Ground with springs, such as winkler_bed, or check the toe"
+            translated(
+                "on rigid ground a base that lifts stands on its edge, where no length and no pressure is defined. "
+                "Give simulate a Ground with springs, such as winkler_bed, or check the toe"
+            )
         )
     if any(each.height is not None for each in p.elements):
-        raise MissingQuantityError("ties to the ground carry a part of the moment; give simulate a Ground with springs")
+        raise MissingQuantityError(
+            translated("ties to the ground carry a part of the moment; give simulate a Ground with springs")
+        )
     force = history.vertical_reaction
     inertia = p.l0r * history.ground_acceleration + history.modal_acceleration @ (p.effective_mass * p.effective_height)
     places = np.array([each.position for each in p.elements])
@@ -386,7 +399,7 @@ def _bearing_pressure(_: Response, history: History, limits: CheckLimits) -> flo
     if history.model.springs is not None:
         return float(history.bearing_pressure.max())
     if limits.breadth is None:
-        raise MissingQuantityError("give breadth, the width of the base perpendicular to the plane")
+        raise MissingQuantityError(translated("give breadth, the width of the base perpendicular to the plane"))
     edge, force = _distance_to_edge(history)
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.where(force > 0.0, force / (2.0 * limits.breadth * edge), 0.0).max())
@@ -401,19 +414,21 @@ def _contact_ratio(_: Response, history: History, __: CheckLimits) -> float:
 
 def _required_friction(_: Response, history: History, __: CheckLimits) -> float:
     if history.model.layout.slip >= 0:
-        raise MissingQuantityError("the base can slide: give slip, the displacement that it may have")
+        raise MissingQuantityError(translated("the base can slide: give slip, the displacement that it may have"))
     return history.required_friction_excluding_impacts()
 
 
 def _slip(run: Response, history: History, _: CheckLimits) -> float:
     if history.model.layout.slip < 0:
-        raise MissingQuantityError("the base cannot slide in this run")
+        raise MissingQuantityError(translated("the base cannot slide in this run"))
     return run.max_slip
 
 
 def _top_travel(run: Response, _: History, __: CheckLimits) -> float:
     if math.isnan(run.max_total_top_displacement):
-        raise MissingQuantityError("the height of the top is not known: give RockingProperties the top_height")
+        raise MissingQuantityError(
+            translated("the height of the top is not known: give RockingProperties the top_height")
+        )
     return run.max_total_top_displacement
 
 
@@ -428,7 +443,7 @@ KINDS = (
         "uplift",
         "",
         _moment_over_resisting,
-        lambda _, limits: Limit(limits.moment_ratio, "" if limits.moment_ratio is None else "user"),
+        lambda _, limits: Limit(limits.moment_ratio, "" if limits.moment_ratio is None else USER),
         remark=_uplift_remark,
     ),
     CheckKind("rotation", "rad", _rotation, _nominal_rotation),
@@ -438,12 +453,10 @@ KINDS = (
         "tendon stress",
         "",
         _tendon_ratio,
-        lambda _, limits: Limit(
-            limits.tendon_ratio, "yield force of the tendon" if limits.tendon_ratio == 1.0 else "user"
-        ),
+        lambda _, limits: Limit(limits.tendon_ratio, YIELD_FORCE if limits.tendon_ratio == 1.0 else USER),
     ),
     CheckKind("fuse strain", "", _fuse_strain, _user("fuse_strain", "fuse_length")),
-    CheckKind("rupture", "", _rupture_ratio, lambda _, __: Limit(1.0, "elongation at which the element breaks")),
+    CheckKind("rupture", "", _rupture_ratio, lambda _, __: Limit(1.0, RUPTURE)),
     CheckKind("bearing pressure", "Pa", _bearing_pressure, _user("bearing_pressure")),
     CheckKind("contact length", "", _contact_ratio, _user("contact_ratio"), at_least=True),
     CheckKind("sliding", "", _required_friction, _user("friction")),

@@ -11,6 +11,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._shown import number_with_noun, shown
 from rockflex._units import KN
 from rockflex._values import Value
@@ -76,21 +77,30 @@ def design_value(values: Array, fallen: Bools, rule: str | None, *, worst_is_lea
     worst = float(values.min() if worst_is_least else values.max())
     asked = None if rule is None else RULES[rule]
     few = asked is None or n < asked.mean_from
-    what = "the most unfavourable value" if few else "the mean"
-    because = "no rule" if asked is None else asked.source
+    known = {"n": n, "k": k, "rule": translated("no rule") if asked is None else asked.source}
+    known["value"] = translated("the most unfavourable value" if few else "the mean")
     if k > (0 if asked is None else asked.may_overturn):
-        fell = f"{k} of {number_with_noun(n, 'record')} {'overturns' if k == 1 else 'overturn'}"
-        return math.nan, f"{fell}: {what} is not defined ({because})"
+        said = translated(
+            "{k} of {n} records overturns: {value} is not defined ({rule})"
+            if k == 1
+            else "{k} of {n} records overturn: {value} is not defined ({rule})",
+            **known,
+        )
+        return math.nan, said
+    said = translated("{value} of {n} record ({rule})" if n == 1 else "{value} of {n} records ({rule})", **known)
     if few:
-        return worst, f"{what} of {number_with_noun(n, 'record')} ({because})"
+        return worst, said
     standing = float(values[~fallen].mean())
     if k == 0:
-        return standing, f"{what} of {n} records ({because})"
+        return standing, said
     # The greater of the two in magnitude; a least reaction has no median factor that is on the safe side.
     if worst_is_least:
-        return float(values[~fallen].min()), f"1 of {n} records overturns: the least of the others ({because})"
+        least = float(values[~fallen].min())
+        return least, translated("1 of {n} records overturns: the least of the others ({rule})", **known)
     median = MEDIAN_FACTOR * fractile(values, fallen, MEDIAN)
-    said = f"1 of {n} records overturns: the larger of 1.2 times the median and the mean of the others ({because})"
+    said = translated(
+        "1 of {n} records overturns: the larger of 1.2 times the median and the mean of the others ({rule})", **known
+    )
     return max(median, standing), said
 
 
@@ -241,24 +251,52 @@ class RecordSet(HtmlTable, Value):
         found, n = list[str](), len(self.responses)
         if self.n_overturned:
             names = ", ".join(run.motion for run, fell in zip(self.responses, self.fallen, strict=True) if fell)
-            found.append(f"{self.n_overturned} of {n} records overturn the structure: {names}. No mean is defined.")
+            found.append(
+                translated(
+                    "{k} of {n} records overturn the structure: {names}. No mean is defined.",
+                    k=self.n_overturned,
+                    n=n,
+                    names=names,
+                )
+            )
         reached = self.rocking_period
         if self.periods is not None and self.periods[1] < reached:
             largest = max((run.max_rotation for run in self.responses if run.status != "overturned"), default=0.0)
-            to = f"a period of {reached:.3g} s" if math.isfinite(reached) else "periods of any length"
+            period = translated("a period of {period} s", period=f"{reached:.3g}")
             found.append(
-                f"The records were chosen for periods up to {self.periods[1]:.3g} s, but at the θ = {largest:.3g} rad "
-                f"that is reached rocking has {to}. Choose them for longer periods."
+                translated(
+                    "The records were chosen for periods up to {longest} s, but at the θ = {rotation} rad that is "
+                    "reached rocking has {period}. Choose them for longer periods.",
+                    longest=f"{self.periods[1]:.3g}",
+                    rotation=f"{largest:.3g}",
+                    period=period if math.isfinite(reached) else translated("periods of any length"),
+                )
             )
         shared = len(horizontal_pairs(self.motions)[0])
         if shared:
             found.append(
-                f"{2 * shared} of {n} records are both components of {number_with_noun(shared, 'recording')}: they are "
-                "not independent, but each counts. Choose one of each recording."
+                translated(
+                    "{k} of {n} records are both components of {shared} recording: they are not independent, but each "
+                    "counts. Choose one of each recording."
+                    if shared == 1
+                    else "{k} of {n} records are both components of {shared} recordings: they are not independent, but "
+                    "each counts. Choose one of each recording.",
+                    k=2 * shared,
+                    n=n,
+                    shared=shared,
+                )
             )
         own = [(run.motion, run.warnings[0]) for run in self.responses if run.warnings]
         if own:
-            found.append(f"{len(own)} of {n} runs have warnings of their own. {own[0][0]}: {own[0][1]}")
+            found.append(
+                translated(
+                    "{k} of {n} runs have warnings of their own. {record}: {warning}",
+                    k=len(own),
+                    n=n,
+                    record=own[0][0],
+                    warning=own[0][1],
+                )
+            )
         return tuple(found)
 
 

@@ -12,6 +12,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._files import checked_file_path
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
@@ -30,21 +31,34 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...
     found: list[str] = []
     if peaks["min_vertical_reaction"] < 0.0:
         found.append(
-            f"The vertical reaction falls to {peaks['min_vertical_reaction']:.4g} N at "
-            f"{peaks['time_of_min_vertical_reaction']:.4g} s: {model} pulls the base down there, which no ground "
-            "can. The pivot would lift, and what follows is to be read with care. Give simulate a Ground with springs, "
-            "on which the base can leave the ground."
+            translated(
+                "The vertical reaction falls to {force:.4g} N at {time:.4g} s: {model} pulls the base down there, "
+                "which no ground can. The pivot would lift, and what follows is to be read with care. Give simulate a "
+                "Ground with springs, on which the base can leave the ground.",
+                force=peaks["min_vertical_reaction"],
+                time=peaks["time_of_min_vertical_reaction"],
+                model=model,
+            )
         )
     if peaks["tendon_overload"]:
         found.append(
-            f"A tendon carries more than its yield force, up to {peaks['tendon_utilisation']:.4g} times it. It stays "
-            "elastic in the model, so the results are not valid. Give it a post_yield_ratio."
+            translated(
+                "A tendon carries more than its yield force, up to {ratio:.4g} times it. It stays elastic in the "
+                "model, so the results are not valid. Give it a post_yield_ratio.",
+                ratio=peaks["tendon_utilisation"],
+            )
         )
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
         found.append(
-            f"θ reaches {peaks['max_rotation']:.4g} rad, {peaks['balance_ratio']:.3g} times the rotation α at which "
-            f"the static moment vanishes. {model} is for small rotations: whether the structure overturns is to be "
-            f"decided by a complete model on rigid ground, such as {complete_model_label(model)}."
+            translated(
+                "θ reaches {rotation:.4g} rad, {ratio:.3g} times the rotation α at which the static moment vanishes. "
+                "{model} is for small rotations: whether the structure overturns is to be decided by a complete model "
+                "on rigid ground, such as {complete}.",
+                rotation=peaks["max_rotation"],
+                ratio=peaks["balance_ratio"],
+                model=model,
+                complete=complete_model_label(model),
+            )
         )
     return tuple(found)
 
@@ -54,10 +68,14 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
     if closing_error <= BALANCED:
         return ()
     return (
-        f"The energy balance closes only to {closing_error:.2g} of the largest input. Rounding explains at most "
-        f"{BALANCED:g}, unless springs give way by far less than a micrometre: otherwise an event was missed, or the "
-        "motion of an element or of the ground was misread. Do not use the run then, and report it as an error of the "
-        "program.",
+        translated(
+            "The energy balance closes only to {error:.2g} of the largest input. Rounding explains at most "
+            "{rounding:g}, unless springs give way by far less than a micrometre: otherwise an event was missed, or "
+            "the motion of an element or of the ground was misread. Do not use the run then, and report it as an error "
+            "of the program.",
+            error=closing_error,
+            rounding=BALANCED,
+        ),
     )
 
 

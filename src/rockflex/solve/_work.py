@@ -20,6 +20,7 @@ from rockflex.models import HEADER, RockingModel, stiffness_of_fuses
 
 LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
 SEARCH = 0.1  # looks into a sample in any case
+FAST = 3.0  # rad that a mode turns in a step, beyond which the engine splits it from the others
 TURN = 1.0  # rad of the fastest vibration per attempted step
 RELAXING = 6.0  # e-folds of the relaxing hysteresis per attempted step
 MICRO = 1e-6
@@ -83,17 +84,16 @@ class CostModel:
     flow: float = 0.0
     dense: bool = False
 
-    def prices(self, *, history: bool) -> tuple[float, float, float, float]:
-        """Return the work in s of a sample, a look, a power series and an attempted step, as in `Log.work`."""
+    def prices(self, *, history: bool) -> tuple[float, float, float]:
+        """Return the work in s of a sample, a look with its power series, and an attempted step."""
         pairs, rows = self.modes + 1, self.rows
         both = rows * pairs
         sample = 0.04 + 0.01 * pairs + 0.0005 * both
         if history:
             sample += 0.02 + 0.002 * pairs**2
-        look = 0.05 + 0.08 * rows + 0.0015 * both
-        series = 0.5 + 0.15 * rows + 0.003 * both
+        look = 0.05 + 0.08 * rows + 0.0015 * both + 0.00075 * pairs**2  # every term of a series is a matrix product
         step = 1.1 + 0.12 * self.modes + 0.02 * rows
-        return MICRO * sample, MICRO * look, MICRO * series, MICRO * step
+        return MICRO * sample, MICRO * look, MICRO * step
 
     def work(
         self, samples: float, dt: float, velocity: float = 0.0, *, history: bool, fastest: float | None = None
@@ -103,7 +103,7 @@ class CostModel:
         `velocity` is the mean ground speed in m/s, which matters for a yielding spring, and `fastest` the frequency in
         rad/s of the fastest vibration that takes work, if that is not the fastest of all.
         """
-        sample, look, _, step = self.prices(history=history)
+        sample, look, step = self.prices(history=history)
         turned = (self.fastest if fastest is None else fastest) * dt
         if self.integrated:
             flowing = step * velocity * self.flow * dt / RELAXING if self.flow else 0.0
@@ -118,9 +118,15 @@ class CostModel:
         return MICRO * samples * each
 
     def _tables(self, dt: float) -> float:
-        """Return the work for the bounds of a dense phase: one matrix product per point of the finest grid."""
+        """Return the work for the tables of all phases: eigenvalues if modes are fast, and products of matrices.
+
+        The bounds of a dense phase take one product per point of the finest grid.
+        """
         pairs, turned = self.modes + 1, self.fastest * dt
-        return MICRO * 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2) if self.dense else 0.0
+        tables = (0.06 if turned > FAST else 0.02) * pairs**3
+        if self.dense:
+            tables += 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2)
+        return MICRO * tables
 
 
 def cost_model_of(model: RockingModel, rows: int) -> CostModel:

@@ -270,7 +270,7 @@ class Engine:
         """The number of samples that a work limit in s allows."""
         if work_limit is None:
             return 2**62
-        sample, look, _, step = self.cost_model.prices(history=False)
+        sample, look, step = self.cost_model.prices(history=False)
         if self.model.integrated:
             return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))

@@ -68,16 +68,16 @@ def _further_beam_modes(
     A heavy body on a light column gives a first mode so flexible that its rounding error exceeds the flexibility of all
     other modes. These are found afterwards, by removing the first mode from every vector.
     """
-    moved = mass @ known
+    moved, times = mass @ known, _N_PROJECTIONS if known.size else 0
 
     def without_known(shape: Array) -> Array:
-        for _ in range(_N_PROJECTIONS):
+        for _ in range(times):
             shape = shape - known @ (moved.T @ shape)
         return shape
 
     def bent(force: Array) -> Array:
         force = np.ravel(force)
-        for _ in range(_N_PROJECTIONS):
+        for _ in range(times):
             force = force - moved @ (known.T @ force)
         return without_known(flexibility(force))
 

@@ -9,6 +9,7 @@ from typing import Any, Protocol, SupportsIndex
 from rockflex._arrays import Array
 from rockflex._checks import checked_finite
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import (
@@ -303,6 +304,10 @@ def _period_warnings(properties: RockingProperties) -> tuple[str, ...]:
     if period <= MAX_PERIOD:
         return ()
     return (
-        f"The first period on a fixed base is {period:.4g} s, longer than usual for buildings, towers and bridges, "
-        f"which stay below {MAX_PERIOD:g} s. Check the units: kg, m, s and N, so EI in N m² and no kN.",
+        translated(
+            "The first period on a fixed base is {period:.4g} s, longer than usual for buildings, towers and bridges, "
+            "which stay below {usual:g} s. Check the units: kg, m, s and N, so EI in N m² and no kN.",
+            period=period,
+            usual=MAX_PERIOD,
+        ),
     )

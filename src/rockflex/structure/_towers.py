@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import checked_magnitude, checked_mode_count, checked_positive, is_one_of
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -269,8 +270,12 @@ class CantileverWithTipMass(AssembledStructure, Value):
         if self.tip_mass >= MIN_TIP_RATIO * column:
             return ()
         return (
-            f"The tip has a mass of {self.tip_mass:g} kg, less than a tenth of the {column:g} kg of its column. "
-            "Masses are in kg: a tonne is 1000 kg.",
+            translated(
+                "The tip has a mass of {tip:g} kg, less than a tenth of the {column:g} kg of its column. Masses are "
+                "in kg: a tonne is 1000 kg.",
+                tip=self.tip_mass,
+                column=column,
+            ),
         )
 
 

@@ -21,8 +21,6 @@ from ._modal_combination import second_mode_peaks as second_mode_peaks
 from ._moment_rotation import moment_rotation as moment_rotation
 from ._plan import ChunkedPlan as ChunkedPlan
 from ._plan import CrossPlan as CrossPlan
-from ._plan import map_chunks as map_chunks
-from ._plan import run_plan as run_plan
 from ._prepared_case import PreparedCase as PreparedCase
 from ._prepared_case import RunOptions as RunOptions
 from ._prepared_case import solutions_of_runs as solutions_of_runs
@@ -41,6 +39,10 @@ from ._run_matrix import StudyMatrix as StudyMatrix
 from ._run_matrix import record_columns as record_columns
 from ._run_matrix import record_facts as record_facts
 from ._run_matrix import record_groups as record_groups
+from ._run_plan import check_place as check_place
+from ._run_plan import fill_folder as fill_folder
+from ._run_plan import run_plan as run_plan
+from ._run_plan import table_of_plan as table_of_plan
 from ._simulate import checked_period_range as checked_period_range
 from ._simulate import simulate as simulate
 from ._simulate import simulate_many as simulate_many

@@ -1,22 +1,19 @@
 """A study divided into chunks that can be computed anywhere."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Sequence
-from contextlib import closing
-from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar, SupportsIndex
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
-from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table, tables_to_dataframe
+from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table
 from rockflex.study._run_matrix import StudyMatrix, record_checksums
-from rockflex.study.parallel import map_runs
-from rockflex.study.progress import ProgressChoice, reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-Result = TypeVar("Result")
+PER_CHUNK = 64  # runs of a chunk of functions such as `run_cloud`, so that a few hundred runs occupy many threads
 
 
 class ChunkedPlan(ABC):
@@ -88,35 +85,6 @@ class ChunkedPlan(ABC):
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
         return arrow_table(self.results(units), self.columns)
-
-
-def run_plan(
-    plan: ChunkedPlan, workers: SupportsIndex | None = None, progress: ProgressChoice = None
-) -> "pd.DataFrame":
-    """Compute all chunks of a plan on threads, and return them as one table, in order.
-
-    `progress` is None, "bar", or a function of the number of units that are done, and of all.
-    """
-    tables: list[ArrowTable] = []
-    with reporting_progress(progress, plan.n_units, plan.units) as advance:
-        plan.check_work()
-        for numbers in plan.rounds:
-            if tables:
-                plan = plan.next_round(tables_to_dataframe(*tables))
-            found = dict[int, ArrowTable]()
-            with closing(map_chunks(plan.chunk, numbers, workers)) as coming:
-                for number, table in coming:
-                    found[number] = table
-                    advance(len(plan.units_of(number)))
-            tables += [found[number] for number in numbers]
-    return tables_to_dataframe(*tables)
-
-
-def map_chunks(
-    chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
-) -> Generator[tuple[int, Result]]:
-    """Yield the number and the result of chunks in order of completion."""
-    return map_runs(lambda number: (number, chunk(number)), numbers, workers)
 
 
 class CrossPlan(ChunkedPlan):

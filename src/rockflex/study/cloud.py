@@ -1,6 +1,7 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -16,8 +17,9 @@ from rockflex.study._arguments import (
     checked_scale_factors,
     expand_scale_range,
 )
-from rockflex.study._plan import CrossPlan, run_plan
+from rockflex.study._plan import PER_CHUNK, CrossPlan
 from rockflex.study._run_matrix import Demands, StudyMatrix, study_matrix
+from rockflex.study._run_plan import run_plan
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import LimitKeys, StructuresStudySpec
 
@@ -101,6 +103,8 @@ def run_cloud(
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
     demands: Demands | None = None,
+    folder: str | Path | None = None,
+    dask: str | None = None,
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -126,6 +130,11 @@ def run_cloud(
     demands
         Functions that make a number of a `Response` with its history, by name: ``{"roof": lambda response:
         abs(response.floor_acceleration[:, -1]).max()}``. Each is a column; what one raises ends the study.
+    folder
+        Where the study is stored, as by `run_study`; the same call resumes one that was stopped. The folder is that of
+        the `CloudStudy` of these arguments with ``runs_per_chunk=64``. With None nothing is stored.
+    dask
+        As in `run_study`.
 
     Returns
     -------
@@ -146,7 +155,10 @@ def run_cloud(
     ------
     InputError
         If a label is unknown, a sequence is empty, two motions have the same name, an argument is out of range, a
-        demand has the name of another column or returns no number, or every run exceeds `work_limit`.
+        demand has the name of another column or returns no number, or every run exceeds `work_limit`; with `folder`
+        or `dask`, as in `run_study`.
+    ClusterError
+        As in `run_study`.
 
     Examples
     --------
@@ -171,4 +183,9 @@ def run_cloud(
         ground=ground,
         demands=demands,
     )
-    return run_plan(CloudPlan(matrix, given, per_chunk=64), workers, progress)
+    plan = CloudPlan(matrix, given, PER_CHUNK)
+
+    def study() -> CloudStudy:
+        return CloudStudy.of_matrix(structures, matrix, scales=plan.scales, friction=friction, runs_per_chunk=PER_CHUNK)
+
+    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, SupportsIndex
 
 from pydantic import Field, model_validator
@@ -14,9 +15,10 @@ from rockflex.fragility import OVERTURNING, check_limit_columns, limit_state_of
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
-from rockflex.study._plan import CrossPlan, run_plan
+from rockflex.study._plan import PER_CHUNK, CrossPlan
 from rockflex.study._result_tables import Columns, Row, Table, joined_tables
-from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_matrix import Demands, StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_plan import run_plan
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StructuresStudySpec, validator_of_check
 
@@ -252,6 +254,9 @@ def run_incremental(
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
+    demands: Demands | None = None,
+    folder: str | Path | None = None,
+    dask: str | None = None,
 ) -> "pd.DataFrame":
     """Scale every motion until it overturns the structure, and beyond, and return every run.
 
@@ -273,6 +278,10 @@ def run_incremental(
         a rotation in rad. A run that overturns exceeds them all.
     progress
         As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
+    demands, dask
+        As in `run_cloud`.
+    folder
+        As in `run_cloud`; it is the folder of the `IncrementalStudy` of these arguments with ``runs_per_chunk=64``.
 
     Returns
     -------
@@ -286,6 +295,8 @@ def run_incremental(
     ------
     InputError
         If the scales do not form a grid, a model's base cannot lift, or as in `run_cloud`.
+    ClusterError
+        As in `run_study`.
 
     Examples
     --------
@@ -297,10 +308,19 @@ def run_incremental(
     2.56
     """
     matrix = study_matrix(
-        structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
-    )
+        structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
+        demands=demands,
+    )  # fmt: skip
     steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
-    return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
+
+    def study() -> IncrementalStudy:
+        return IncrementalStudy.of_matrix(
+            structures, matrix, smallest_scale=smallest_scale, largest_scale=largest_scale, growth=growth,
+            tolerance=tolerance, limit=limit, runs_per_chunk=PER_CHUNK,
+        )  # fmt: skip
+
+    plan = IncrementalPlan(matrix, steps, limit, PER_CHUNK)
+    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
 
 
 def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.DataFrame":

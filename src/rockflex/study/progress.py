@@ -1,9 +1,9 @@
 """Progress of a study: reported to a function, or shown as a bar, a table in a notebook or lines of a log."""
 
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -195,18 +195,37 @@ class Progress:
 PartProgress = Literal["bar"] | Callable[[Progress], object] | None
 
 
+Begin = Callable[[Sequence[int]], Callable[[int, int], object]]
+"""It takes the numbers of the parts to compute, and returns what takes the number and the rows of each when done."""
+
+
 @contextmanager
-def reporting_part_progress(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
-    """Yield a function that tells the progress of a study."""
+def reporting_part_progress(progress: PartProgress, total: int) -> Generator[Begin]:
+    """Yield what tells the progress of a study of `total` parts."""
     check_progress(progress, "one Progress")
-    if progress is None:
-        yield lambda _: None
-    elif isinstance(progress, str):
+    if isinstance(progress, str):
         with progress_bar("Parts") as show:
             start = perf_counter()
-            yield lambda now: show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
+            yield _part_counter(
+                lambda now: show(now.done, now.parts, row_rate_text(now, perf_counter() - start)), total
+            )
     else:
-        yield progress
+        yield _part_counter(progress or (lambda _: None), total)
+
+
+def _part_counter(tell: Callable[[Progress], object], total: int) -> Begin:
+    def begin(missing: Sequence[int]) -> Callable[[int, int], object]:
+        now = Progress(total, total - len(missing), total - len(missing), 0)
+        tell(now)
+
+        def told(_: int, rows: int) -> None:
+            nonlocal now
+            now = replace(now, done=now.done + 1, runs=now.runs + rows)
+            tell(now)
+
+        return told
+
+    return begin
 
 
 def row_rate_text(now: Progress, seconds: float) -> str:

@@ -35,6 +35,7 @@ from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, 
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
 from rockflex.study._arguments import (
     WORK_LIMIT,
+    Structures,
     check_run_options,
     checked_motions,
     checked_structures,
@@ -432,6 +433,17 @@ class StructuresStudySpec(RunsStudySpec):
             for key, value in entry.checksums(self._folder).items()
         }
         return files | super().checksums()
+
+    @classmethod
+    def of_matrix(cls, structures: Structures, matrix: StudyMatrix, **keys: Any) -> Self:
+        """Return the study of these structures with the records, models and options of their matrix."""
+        options = matrix.options
+        return cls(
+            structures=structures, records=matrix.motions, models=matrix.labels, impact=options.impact,
+            bouc_wen=options.bouc_wen, ground=options.ground, demands=options.demands or None,
+            free_vibration="settle" if options.free_vibration is None else options.free_vibration,
+            work_limit="none" if options.work_limit is None else options.work_limit, **keys,
+        )  # fmt: skip
 
     def matrix(self, *, friction: bool = False) -> StudyMatrix:
         """Build the structures and load the records."""

@@ -7,7 +7,7 @@ from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any
+from typing import Any, get_args
 from urllib.parse import quote
 
 import anyio
@@ -21,27 +21,30 @@ from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
+from rockflex._language import CATALOGUES, use_language
+from rockflex._units import QUANTITIES, SystemName, UnitSystem
+from rockflex.report.run._report_files import found_browser
 from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.study import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
-from rockflex.web._downloads import MEDIA_TYPES, animation_file, download_file, study_file
+from rockflex.web._alternatives import alternatives_view
+from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
-from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, StudyJob
+from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
+from rockflex.web._projects import state_of_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
-from rockflex.web._studies import PAGES, study_plan
 from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
 
 WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
-LANGUAGES = Path(__file__).parents[1] / "languages"  # a catalogue of texts for each, by the English ones
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
-MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
@@ -57,9 +60,8 @@ class PageServer:
 
     def __init__(self) -> None:
         self.uploads = UploadedRecords()
-        self.jobs = BackgroundJobs[StudyJob]("studies", MAX_STUDIES)
-        self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES)
-        self._ready = Event()
+        self.jobs = BackgroundJobs[RunsJob]("studies", MAX_STUDIES)
+        self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
@@ -69,7 +71,6 @@ class PageServer:
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
-        self._ready.set()
 
     async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
@@ -99,8 +100,8 @@ class PageServer:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits, and whether the first answer is ready."""
-        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page) | {"ready": self._ready.is_set()})
+        """Forms, presets, suites, pulses, units and limits."""
+        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page))
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
@@ -117,7 +118,8 @@ class PageServer:
 
         async def endpoint(request: Request) -> Response:
             state, content = await _state_and_content(request)
-            return JSONResponse(await self.run(request, lambda: work(state, content), most))
+            with use_language(state.language):
+                return JSONResponse(await self.run(request, lambda: work(state, content), most))
 
         return endpoint
 
@@ -153,6 +155,12 @@ class PageServer:
 
             return JSONResponse(await self.answer(work, MAX_FOLDERS_READ))
 
+    async def project(self, request: Request) -> Response:
+        """The state in a project's file."""
+        async with self._folders_received:
+            body = await uploaded_file_bytes(request, limits.MAX_PROJECT_BYTES, limits.MAX_PROJECT_BYTES)
+            return JSONResponse(await self.answer(lambda: state_of_project(body, self.uploads), MAX_FOLDERS_READ))
+
     async def folder_report(self, request: Request) -> Response:
         """Report on a folder that the server has."""
         token = request.path_params["token"]
@@ -164,21 +172,13 @@ class PageServer:
         name, part = query.get("name", "matrices"), query.get("part", "")
         return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
 
-    async def download(self, request: Request) -> Response:
-        """A file of the results on the page."""
-        state, _ = await _state_and_content(request)
-        what = request.path_params["what"]
-        return _file_answer(
-            *await self.run(request, lambda: download_file(state, what, self.uploads), MAX_FILES_WRITTEN)
-        )
-
     async def start(self, request: Request) -> Response:
         """Start a study."""
         kind = _study_kind_in_request(request)
         state, _ = await _state_and_content(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(StudyJob(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
+            return {"token": self.jobs.start(PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind))}
 
         return JSONResponse(await self.answer(work))
 
@@ -186,29 +186,24 @@ class PageServer:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
-        return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
+        with use_language(state.language):
+            return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
-        """Table or figure of a study."""
+        """Start to make the table or the figure of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return _file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN))
-
-    async def cancel(self, request: Request) -> Response:
-        """Stop a study."""
-        self.jobs.cancel(request.path_params["token"])
-        return JSONResponse({})
+        return self._making(lambda _: study_file(PAGES[kind], job, state, what), state)
 
     async def make(self, request: Request) -> Response:
-        """Start to make a file that takes long."""
-        what = request.path_params["what"]
-        if what != "animation":
-            raise Refusal(f"There is no file named {what[:40]!r} to make.", 404)
+        """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
-        return JSONResponse(
-            {"token": self.files.start(BackgroundFileJob(lambda told: animation_file(state, self.uploads, told)))}
-        )
+        return self._making(file_maker(state, request.path_params["what"], self.uploads), state)
+
+    def _making(self, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
+        in_language = use_language(state.language)(make)
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(in_language))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -217,19 +212,20 @@ class PageServer:
         return JSONResponse({"status": job.status, "done": job.done, "total": job.total, "errors": errors})
 
     async def made(self, request: Request) -> Response:
-        """Hand out a file that was made."""
+        """Hand out a file that was made, and forget its content."""
         job = self.files.get(request.path_params["token"])
         if job.file is None:
-            raise Refusal("The file is not finished.", 404)
-        name, content = job.file
+            raise Refusal("The file is not finished, or was handed out already.", 404)
+        (name, content), job.file = job.file, None
         return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
-    async def unmake(self, request: Request) -> Response:
-        """Stop to make a file."""
-        self.files.cancel(request.path_params["token"])
+    async def cancel(self, request: Request) -> Response:
+        """Stop a study, or to make a file."""
+        jobs = self.files if request.url.path.startswith("/api/file/") else self.jobs
+        jobs.cancel(request.path_params["token"])
         return JSONResponse({})
 
-    def _job(self, request: Request) -> tuple[str, StudyJob]:
+    def _job(self, request: Request) -> tuple[str, RunsJob]:
         kind, job = _study_kind_in_request(request), self.jobs.get(request.path_params["token"])
         if job.kind != kind:
             raise Refusal(f"That study is not a {kind} study.", 404)
@@ -350,23 +346,24 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/structure", view(structure), methods=["POST"]),
         Route("/api/record", view(lambda state, _: record_view(state, uploads)), methods=["POST"]),
         Route("/api/response", view(response), methods=["POST"]),
+        Route("/api/alternatives", view(lambda state, _: alternatives_view(state, uploads)), methods=["POST"]),
+        Route("/api/project", server.project, methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
         Route("/api/folder", server.folder, methods=["POST"]),
         Route("/api/folder/{token}", server.folder_report),
         Route("/api/selection", view(selection, MAX_SELECTIONS_COMPUTED), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
-        Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
         Route("/api/study/{kind}/{token}/{what}", server.study_file, methods=["POST"]),
         Route("/api/job/{token}", server.cancel, methods=["DELETE"]),
+        Route("/api/file/{token}", server.cancel, methods=["DELETE"]),
         Route("/api/file/{what}", server.make, methods=["POST"]),
         Route("/api/file/{token}", server.making),
-        Route("/api/file/{token}", server.unmake, methods=["DELETE"]),
         Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
-        Mount("/languages", StaticFiles(directory=LANGUAGES, check_dir=False)),
+        Mount("/languages", StaticFiles(directory=CATALOGUES)),
     ]
     handlers: dict[Any, Any] = {
         Refusal: _answer_to_refusal,
@@ -392,6 +389,8 @@ def _answer_about_page() -> dict[str, Any]:
         "duration": limits.MAX_DURATION,
         "models": limits.MAX_MODELS,
         "elements": limits.MAX_ELEMENTS,
+        "alternatives": MAX_ALTERNATIVES,
+        "project": limits.MAX_PROJECT_BYTES,
     }
     first = PageState.model_validate(FIRST)
     return forms_of_structures() | {
@@ -400,6 +399,11 @@ def _answer_about_page() -> dict[str, Any]:
         "limit_states": limit_state_labels(),
         "pulses": pulses,
         "limits": most,
+        "units": {
+            name: {quantity: UnitSystem(name).of(quantity)._asdict() for quantity in QUANTITIES}
+            for name in get_args(SystemName)
+        },
+        "pdf": found_browser() is not None,
         "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 

@@ -1,11 +1,9 @@
 """The files of the page: figures, tables, records, studies, programs, a report and an animation."""
 
-import csv
-import io
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import tomli_w
 
@@ -13,20 +11,26 @@ from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
 from rockflex.report.run import run_report_as_html
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
+from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._folders import records_as_zip
-from rockflex.web._jobs import StudyJob
+from rockflex.web._jobs import RunsJob
+from rockflex.web._projects import project_file
+from rockflex.web._record_sets import RECORD_SET_PAGE
 from rockflex.web._refusal import Refusal, errors_as_refusals
-from rockflex.web._response import check_work_of_energy, simulate_state_models
+from rockflex.web._response import is_long_run_report, simulate_state_models
 from rockflex.web._script import response_script, selection_script
 from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
 from rockflex.web._state import PageState
-from rockflex.web._structure import build_page_structure
-from rockflex.web._studies import PAGES, StudyPage
+from rockflex.web._studies import CLOUD_PAGE, DESIGN_PAGE, StudyPage
 from rockflex.web._uploads import UploadedRecords, clean_upload_name
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+PAGES = {"cloud": CLOUD_PAGE, "design": DESIGN_PAGE, "record_set": RECORD_SET_PAGE}
+"""The kinds of study that the page shows, by their names."""
 
 
 def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -43,22 +47,13 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             found,
             structure=built.structure,
             motion=motion,
-            title=f"{name} under {motion.name or 'a ground motion'}{times}",
-            omitted=[response.model for response in found if _is_long_run_report(response, acting, state)],
+            units=state.units,
+            language=state.language,
+            **{"title": f"{name} under {motion.name or 'a ground motion'}{times}"} | state.head_texts(),
+            omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
+            limits=state.check_limits(),
         )
     return "report.html", text
-
-
-def _is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
-    """Whether energies and friction would take too long here, as they do on many stiff springs."""
-    assert response.history is not None  # asked for in `simulate_state_models`
-    if response.history.model.springs is not None:
-        return True
-    try:
-        check_work_of_energy(response, motion, state)
-    except Refusal:
-        return True
-    return False
 
 
 FRAME_RATES = ((60.0, 25.0), (120.0, 12.5))
@@ -66,9 +61,10 @@ FRAME_RATES = ((60.0, 25.0), (120.0, 12.5))
 ANIMATION_WIDTH = 800  # pixels
 
 
-def animation_file(
-    state: PageState, uploads: UploadedRecords, progress: Callable[[int, int], None]
-) -> tuple[str, bytes]:
+Progress = Callable[[int, int], None]
+
+
+def animation_file(state: PageState, uploads: UploadedRecords, progress: Progress) -> tuple[str, bytes]:
     """Return the name and the content of a GIF of the models that are shown, at their true speed.
 
     `progress` is called with the number of frames drawn and that of all.
@@ -99,6 +95,8 @@ MEDIA_TYPES = {
     ".svg": "image/svg+xml",
     ".gif": "image/gif",
     ".html": "text/html",
+    ".pdf": "application/pdf",
+    ".rockflex": "application/zip",
     ".csv": "text/csv",
     ".toml": "application/toml",
     ".py": "text/x-python",
@@ -107,58 +105,36 @@ MAX_HISTORY_ROWS = 250_000  # of a table of histories
 MAX_HISTORY_VALUES = 6_000_000  # of it: a bed has a column for every spring
 
 
-def download_file(state: PageState, what: str, uploads: UploadedRecords) -> tuple[str, str, bytes]:
-    """Return the name, the type and the content of a file.
+def file_maker(state: PageState, what: str, uploads: UploadedRecords) -> Callable[[Progress], tuple[str, bytes]]:
+    """Return the function that makes a file: it is given whom to tell of its progress, and returns name and content.
 
     Parameters
     ----------
     state
         The state of the page.
     what
-        A key of `_MAKERS`, or one of a study: ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``,
-        ``"design-study"``, ``"design-python"``, ``"design-records"``.
+        ``"animation"``, a key of `_MAKERS`, or one of a study: ``"cloud-study"``, ``"cloud-python"``,
+        ``"cloud-records"``, and the same of the other kinds.
     uploads
         Records of visitors.
     """
+    if what == "animation":
+        return lambda progress: animation_file(state, uploads, progress)
     maker = _MAKERS.get(what) or _maker_of_study_file(what)
     if maker is None:
-        raise Refusal(f"There is no download named {what[:40]!r}.", 404)
-    name, content = maker(state, uploads)
-    data = content if isinstance(content, bytes) else content.encode()
-    return name, MEDIA_TYPES[Path(name).suffix], data
+        raise Refusal(f"There is no file named {what[:40]!r}.", 404)
+
+    def make(_: Progress) -> tuple[str, bytes]:
+        name, content = maker(state, uploads)
+        return name, content if isinstance(content, bytes) else content.encode()
+
+    return make
 
 
 def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     from rockflex.plot import figure_as_svg, plot_history
 
     return "response.svg", figure_as_svg(plot_history(simulate_state_models(state, uploads)[2]))
-
-
-def _energy_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_energy
-
-    _, motion, found = simulate_state_models(state, uploads)
-    check_work_of_energy(found[0], motion, state)
-    return "energy.svg", figure_as_svg(plot_energy(found[0]))
-
-
-def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_mode_shapes
-
-    built = build_page_structure(state.structure)
-    if built.modes is None:
-        raise Refusal({"structure": "the shapes of the modes are not known, so there is no figure of them."})
-    return "modes.svg", figure_as_svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
-
-
-def _peaks_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    _, motion, found = simulate_state_models(state, uploads)
-    rows = [response.peaks() for response in found]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["motion", "scale", *rows[0]])
-    writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
-    return "peaks.csv", text.getvalue()
 
 
 def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -223,27 +199,6 @@ def _motion_file_name(motion: GroundMotion) -> str:
     return clean_upload_name(motion.name.replace("/", "_"))
 
 
-def _response_study_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    """The runs of the Response tab as a cloud study of one record."""
-    motion = chosen_motion(state.record, uploads)
-    head = "# rockflex cloud study.toml --out study\n"
-    records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
-    if state.record.source != "suite":
-        name = f"{_motion_file_name(motion)}.csv"
-        head += f'# Put the record, which the page saves as "{name}", into the folder records next to this file.\n'
-        records = {"folder": "records"}
-    content: dict[str, Any] = {
-        "study": "cloud",
-        "name": state.structure.name or "Response",
-        "models": list(state.models),
-        "scales": [state.scale],
-        "free_vibration": state.free_vibration,
-    }
-    content |= state.option_keys(state.models)
-    structure = state.structure.model_dump(exclude_none=True)
-    return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
-
-
 def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     own = state.record.source in ("upload", "folder")
     name = _motion_file_name(chosen_motion(state.record, uploads)) if own else ""
@@ -269,30 +224,30 @@ def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tu
     def records(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
         return f"{RECORDS_FOLDER}.zip", records_as_zip(page.study(state, uploads).records.motions)
 
-    return {"study": toml, "python": python, "records": records}.get(form)
+    return {"study": toml if kind in KINDS else None, "python": python, "records": records}.get(form)
 
 
-def study_file(page: StudyPage, job: StudyJob, state: PageState, what: str) -> tuple[str, str, bytes]:
-    """Return the name, the type and the content of the table or the figure of a study, from its runs so far."""
+def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tuple[str, bytes]:
+    """Return the name and the content of the table, the figure or the report of a study, from its runs so far."""
     if what == "table":
-        return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
+        return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
     from rockflex.plot import figure_as_svg
 
+    if what == "report" and page.report is not None:
+        return "report.html", page.report(job, state).encode()
     with errors_as_refusals(""):
-        return f"{page.figure_name}.svg", "image/svg+xml", figure_as_svg(page.figure(job, state)).encode()
+        return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()
 
 
 _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
     "figure": _history_figure_file,
-    "energy": _energy_figure_file,
     "report": run_report_file,
-    "modes": _mode_shapes_figure_file,
-    "peaks": _peaks_table_file,
+    "comparison": lambda state, uploads: comparison_report_file(state, uploads, ".html"),
+    "comparison-pdf": lambda state, uploads: comparison_report_file(state, uploads, ".pdf"),
+    "project": project_file,
     "histories": _histories_table_file,
     "record": _record_csv_file,
     "records": lambda state, uploads: (f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))),
-    "structure": lambda state, _: ("structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))),
-    "study": _response_study_file,
     "python": _response_python_file,
     "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
     "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),

@@ -91,7 +91,7 @@ def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:
         "name": name,
         "label": key.label or name.replace("_", " ").capitalize(),
         "unit": key.unit,
-        "help": _form_field_sentence(key.page or key.description),
+        "help": _form_field_sentence(key.page or key.description, key.unit),
         "type": _form_field_type(field.annotation),
         "choices": _form_field_choices(field.annotation),
         "required": field.is_required(),
@@ -102,7 +102,9 @@ def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:
     }
 
 
-def _form_field_sentence(description: str) -> str:
+def _form_field_sentence(description: str, unit: str) -> str:
+    if unit:  # beside the field, which may be in another one
+        description = re.sub(rf",? in {re.escape(unit)}(?!\w)", "", description)
     begins = description[:1].upper() if re.match("a |[a-z]{2}", description) else description[:1]  # not γ, n or h*_1
     return f"{begins}{description[1:]}."
 

@@ -15,7 +15,8 @@ from rockflex.study import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 MAX_STUDIES = 40  # studies that are remembered
-MAX_FILES = 4  # files
+MAX_FILES = 8  # files, until they are handed out
+MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 MAX_WAITING = 12  # jobs of a kind that may wait or run at the same time
 ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because its page was closed
 
@@ -69,12 +70,20 @@ class BackgroundWork:
         return self.cancelled.is_set() or monotonic() - self.seen > ABANDONED_AFTER
 
 
-class StudyJob(BackgroundWork):
+class RunsJob(BackgroundWork):
+    """Many runs, of one kind of page; `runs` of them are done."""
+
+    def __init__(self, kind: str) -> None:
+        super().__init__()
+        self.kind, self.runs = kind, 0
+
+
+class StudyJob(RunsJob):
     """A study, computed chunk after chunk; `tables` only grows."""
 
     def __init__(self, plan: ChunkedPlan, kind: str) -> None:
-        super().__init__()
-        self.plan, self.kind, self.runs = plan, kind, 0
+        super().__init__(kind)
+        self.plan = plan
         self.tables: list[Any] = []
 
     def work(self) -> None:
@@ -96,8 +105,10 @@ class BackgroundFileJob(BackgroundWork):
         self._make = make
 
     def work(self) -> None:
-        """Make the file."""
-        self.file = self._make(self._report)
+        """Make the file; one that was cancelled meanwhile is dropped."""
+        made = self._make(self._report)
+        check_interruption()
+        self.file = made
 
     def _report(self, done: int, total: int) -> None:
         check_interruption()
@@ -108,7 +119,7 @@ AnyWork = TypeVar("AnyWork", bound=BackgroundWork)
 
 
 class BackgroundJobs(Generic[AnyWork]):
-    """Jobs by token, which cannot be guessed. One runs at a time, so that a core is free for answers.
+    """Jobs by token, which cannot be guessed. Few run at a time, so that a core is free for answers.
 
     Parameters
     ----------
@@ -116,14 +127,16 @@ class BackgroundJobs(Generic[AnyWork]):
         Their name in messages.
     kept
         How many are remembered.
+    at_once
+        How many run at a time.
     """
 
-    def __init__(self, what: str, kept: int) -> None:
-        self._what, self._kept = what, kept
+    def __init__(self, what: str, kept: int, at_once: int = 1) -> None:
+        self._what, self._kept, self._at_once = what, kept, at_once
         self._jobs: OrderedDict[str, AnyWork] = OrderedDict()
         self._lock = Lock()
         self._queue: SimpleQueue[AnyWork | None] = SimpleQueue()
-        self._thread: Thread | None = None
+        self._threads: list[Thread] = []
 
     def start(self, job: AnyWork) -> str:
         """Queue a job, and return its token."""
@@ -137,9 +150,9 @@ class BackgroundJobs(Generic[AnyWork]):
                 if old is None:
                     break
                 del self._jobs[old]
-            if self._thread is None:  # a daemon: work that cannot be interrupted does not keep the server from stopping
-                self._thread = Thread(target=self._run, name=self._what, daemon=True)
-                self._thread.start()
+            if len(self._threads) < self._at_once:  # daemons: what cannot be interrupted does not keep the server up
+                self._threads.append(Thread(target=self._run, name=self._what, daemon=True))
+                self._threads[-1].start()
         self._queue.put(job)
         return token
 
@@ -164,7 +177,8 @@ class BackgroundJobs(Generic[AnyWork]):
         with self._lock:
             for job in self._jobs.values():
                 job.cancelled.set()
-        self._queue.put(None)
+        for _ in self._threads:
+            self._queue.put(None)
 
     def _run(self) -> None:
         while (job := self._queue.get()) is not None:

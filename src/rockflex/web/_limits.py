@@ -31,6 +31,8 @@ MAX_FILE_BYTES = 5_000_000  # bytes of an upload
 MAX_BODY_BYTES = 6_000_000  # bytes of any request, except one with a folder
 MAX_FOLDER_FILES = 500  # of a folder
 MAX_FOLDER_BYTES = 80_000_000  # bytes of its files, unpacked
+MAX_PROJECT_BYTES = 20_000_000  # of a project's file, packed; unpacked it has the limits of a folder
+MAX_TOML_BYTES = 1_000_000  # of its tables: they are read slowly
 MAX_FREEDOMS = 200  # stories, masses, rows of a matrix
 MAX_ELEMENTS = 20  # between the base and the ground: each can change its branch at every turn of the base
 MAX_SAMPLES = 200_000
@@ -43,6 +45,7 @@ MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.
 RUN_WORK_LIMIT = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
 MAX_ANSWER_COST = 3.0  # s of estimated computing time of the runs of one answer
 MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
+MAX_SET_SAMPLES = 600_000  # of all records of a set, whose histories are kept
 
 MAX_NUMBER = 1e15
 
@@ -157,6 +160,18 @@ def _checked_work_of_run(task: Task, path: str) -> float:
         )
         raise Refusal({path: message})
     return work
+
+
+def check_size_of_set(case: PreparedCase, motions: Sequence[GroundMotion], path: str) -> None:
+    """Refuse a set of records whose runs take too long, individually or together, or whose histories take too much."""
+    work = sum(_checked_work_of_run(case.task(motion), path) for motion in motions)
+    samples = sum(motion.acceleration.size for motion in motions)
+    if work > MAX_STUDY_COST or samples > MAX_SET_SAMPLES:
+        message = (
+            f"{len(motions)} records with {samples} samples are too many for a page, which keeps all histories. Choose "
+            "fewer records or a model with fewer modes, or use rockflex check."
+        )
+        raise Refusal({path: message})
 
 
 def _check_model_of_structure(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:

@@ -1,5 +1,8 @@
 """The Response tab: several models, with histories thinned to the resolution of a screen, and exact peaks."""
 
+import math
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -14,6 +17,7 @@ from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of_energy, warnings_of_response
 from rockflex.solve import cost_model_of
 from rockflex.study import PreparedCase
+from rockflex.web._checks import checks_view
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._limits import check_work_of_runs
@@ -78,7 +82,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
-CURVES = ("rotation", "top_displacement", "base_moment", "base_shear")
+CURVES = ("rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement")
 MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.CostModel`
 
 
@@ -111,16 +115,15 @@ SKETCH = "2DOF-S"  # the model that is fast enough to follow a handle that is dr
 def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> dict[str, Any]:
     """Return how the first model that lifts moves, and what a fixed base under the same record would do.
 
-    A `quick` one, and one that would take long, has one mode. Where no run is possible, a note says why. The fixed base
-    stands on rigid ground.
+    A `quick` one, and one that would take long, has one mode, whose spectral displacement tells what the fixed base
+    does. Where no run is possible, a note says why. The fixed base stands on rigid ground.
     """
     built = build_page_structure(state.structure)
     p = built.properties
     ground = ground_under_page_structure(state.ground, p)
     lifting = next((label for label in state.models if parse_model(label).lifts), "MDOF-S" if p.n_modes else "rigid")
-    labels = [lifting, "fixed"] if p.n_modes else [lifting]
-    simpler = [SKETCH, "1DOF-fixed"] if p.n_modes and not parse_model(lifting).yields and not p.stories else labels
-    found = list[Response]()
+    simple = p.n_modes > 0 and not parse_model(lifting).yields and not p.stories
+    moment = top = None
     try:
         motion = chosen_motion(state.record, uploads).scaled(state.scale)
 
@@ -129,25 +132,33 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
                 options = state.run_options(ground if main else None)
                 return options.case(parse_model(label), p, history=main, floors=False)
 
-        if quick or case(lifting, main=True).task(motion).work().total > MAX_SKETCH_COST:
-            labels = simpler
-        for label in labels:
-            prepared = case(label, main=not found)
+        def run(label: str, *, main: bool) -> Response:
+            prepared = case(label, main=main)
             check_work_of_runs([prepared], motion)
             with errors_as_refusals("models", f"{label}: "):
-                found.append(prepared.run(motion))
+                return prepared.run(motion)
+
+        if not quick:
+            simple = simple and case(lifting, main=True).task(motion).work().total > MAX_SKETCH_COST
+        response = run(SKETCH if simple else lifting, main=True)
     except Refusal as error:
-        if not found:
-            return {"note": " ".join(error.errors.values())}
-    fixed = found[1] if len(found) > 1 else None
-    curves = _response_curves(built, found[0], None, SKETCH_POINTS)
+        return {"note": " ".join(error.errors.values())}
+    if simple:
+        displacement = motion.sd(2.0 * math.pi / float(p.omega[0]), float(p.zeta[0]))
+        moment = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2) * displacement
+        top = None if p.top_height is None else abs(float(p.top_ordinate[0])) * displacement
+    elif p.n_modes:
+        with suppress(Refusal):
+            fixed = run("fixed", main=False)
+            moment, top = fixed.max_base_moment, fixed.max_total_top_displacement
+    curves = response_curves(built, response, None, SKETCH_POINTS // 2 if quick else SKETCH_POINTS, CURVES[:2])
     return as_json_value(
         {
             **structure_outline_view(state.structure, built),
-            "models": [{key: value for key, value in curves.items() if key not in CURVES[1:]}],
+            "models": [curves],
             "ground": ground_view(ground, p),
-            "fixed_base_moment": fixed and fixed.max_base_moment,
-            "fixed_top_displacement": fixed and fixed.max_total_top_displacement,
+            "fixed_base_moment": moment,
+            "fixed_top_displacement": top,
         }
     )
 
@@ -164,7 +175,7 @@ def response_view(
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
     drawn = chosen_element(element, p)
-    energy, curves = _energy_view(motion, main, state), [_response_curves(built, response, drawn) for response in found]
+    energy, curves = _energy_view(motion, main, state), [response_curves(built, response, drawn) for response in found]
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
@@ -179,6 +190,7 @@ def response_view(
             ),
             "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
+            "checks": checks_view(found[0], state, friction=not is_long_run_report(found[0], motion, state)),
         }
     )
 
@@ -193,17 +205,26 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _response_curves(
-    built: BuiltStructure, response: Response, element: int | None, points: int = MAX_HISTORY_POINTS
+def response_curves(
+    built: BuiltStructure,
+    response: Response,
+    element: int | None,
+    points: int = MAX_HISTORY_POINTS,
+    names: Sequence[str] = CURVES,
 ) -> dict[str, Any]:
+    """Return a response as the page draws it, with its peaks and the loop of one element."""
     history = response.history
     assert history is not None  # asked for in `simulate_state_models`
-    pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
-    base = base_motion_curves(history)
-    kept = _thinned_history_nodes(history, pulled, list(base.values()), points)
+    known = history.model.properties.top_height is not None
+    curves = {name: getattr(history, name) for name in names if known or name != "total_top_displacement"}
+    curves |= base_motion_curves(history)
+    if element is not None and history.model.lifts:
+        curves["element_force"] = history.element_force[:, element]
+        curves["element_elongation"] = history.element_elongation[:, element]
+        points *= 2  # loops need more points than curves over time
+    kept = _thinned_history_nodes(history, list(curves.values()), points)
     modal = history.modal_displacement[kept]
     drawn = modal @ built.shapes[:, : modal.shape[1]].T
-    known = history.model.properties.top_height is not None
     return {
         "label": response.model,
         "status": response.status,
@@ -215,15 +236,9 @@ def _response_curves(
         "fall_time": _overturning_time(history),
         "impact_times": history.impact_times[:MAX_EVENT_NODES],
         "t": pack_array_as_base64(history.time[kept]),
-        **{name: pack_array_as_base64(getattr(history, name)[kept]) for name in CURVES},
-        "total_top_displacement": pack_array_as_base64(history.total_top_displacement[kept]) if known else None,
-        **{name: pack_array_as_base64(values[kept]) for name, values in base.items()},
+        **{name: pack_array_as_base64(values[kept]) for name, values in curves.items()},
         "uplifted": pack_array_as_base64(history.uplifted[kept]),
         "points": pack_array_as_base64(drawn),
-        "element_force": None if pulled is None else pack_array_as_base64(pulled[kept]),
-        "element_elongation": None
-        if pulled is None
-        else pack_array_as_base64(history.element_elongation[kept, element]),
     }
 
 
@@ -242,17 +257,8 @@ def base_motion_curves(history: History) -> dict[str, Array]:
     return curves
 
 
-def _thinned_history_nodes(history: History, pulled: Array | None, base: list[Array], points: int) -> NDArray[np.intp]:
-    """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
-
-    `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.
-    """
-    curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear, *base]
-    if pulled is not None:  # loops need more points than curves over time
-        curves.append(pulled)
-        points *= 2
-    if history.model.properties.top_height is not None:
-        curves.append(history.total_top_displacement)
+def _thinned_history_nodes(history: History, curves: list[Array], points: int) -> NDArray[np.intp]:
+    """Return the nodes that are sent: the extremes of every interval, and both sides of the events."""
     kept = envelope_indices(curves, points)
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))
@@ -292,6 +298,18 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
     )  # more branches to follow
     if work > MAX_ENERGY_COST:
         raise Refusal({"energy": "the energy is not computed here for so many or such fast modes over so long a time."})
+
+
+def is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
+    """Whether energies and friction would take too long here, as they do on many stiff springs."""
+    assert response.history is not None  # asked for in `simulate_state_models`
+    if response.history.model.springs is not None:
+        return True
+    try:
+        check_work_of_energy(response, motion, state)
+    except Refusal:
+        return True
+    return False
 
 
 def _energy_view(motion: GroundMotion, response: Response, state: PageState) -> dict[str, Any]:

@@ -101,6 +101,28 @@ def design_script(state: PageState, study: DesignStudy) -> str:
     )
 
 
+def record_set_script(state: PageState, study: Any) -> str:
+    """Return a program that repeats the set of records of the Response tab, in `found`, with its checks in `table`."""
+    choice, label = state.record_set, state.model_of_set
+    scaled = f"motions = [motion.scaled({choice.scale!r}) for motion in motions]"
+    yields = bool(yielding_model_labels([label]))
+    extra = f"rule={choice.rule or None!r}, periods={study.periods!r}, free_vibration={state.free_vibration!r}"
+    extra += f"{_impact_law_code(state)}{_ground_argument_code(state)}{', bouc_wen=yielding' if yields else ''}"
+    return _python_program(
+        state,
+        [_suite_motions_code(choice.suites), *([] if choice.scale == 1.0 else [scaled])],
+        [
+            f"found = rf.simulate_set(structure, motions, {label!r}, {extra})",
+            "print(found.statistics.to_string())",
+            f"limits = rf.CheckLimits({_python_named_arguments(state.limits)})",
+            "table = rf.check(found, limits)",
+            "print(table.to_frame().to_string())",
+            'rf.write_report(found, "report.html", structure=structure, limits=limits)',
+        ],
+        yields=yields,
+    )
+
+
 def selection_script(choice: TargetChoice) -> str:
     """Return a program that repeats the choice of records for a target, in `chosen`."""
     name, values, named = target_spectrum_call(choice)

@@ -2,18 +2,23 @@
 
 import json
 import math
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Generator, Sequence
+from contextlib import contextmanager
+from dataclasses import fields
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
+from rockflex._language import Language
+from rockflex._units import SystemName
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
+from rockflex.response import CheckLimits
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
-from rockflex.study import RunOptions, yielding_model_labels
+from rockflex.study import MAX_ALTERNATIVES, RunOptions, yielding_model_labels
 from rockflex.study._ground_tables import GroundTable
 from rockflex.study.spec import BoucWenTable, RunOptionKeys
 from rockflex.web._limits import (
@@ -81,13 +86,13 @@ SameForAll = Annotated[
 
 
 def measure_labels() -> list[dict[str, Any]]:
-    """Return the labels of each measure, and whether a search for a width can use it."""
+    """Return the labels and the SI unit of each measure, and whether a search for a width can use it."""
     return [
         {
             "name": measure.name,
             "title": measure.title,
             "unit": measure.unit,
-            "axis": measure.with_unit(measure.label),
+            "axis": measure.label,
             "of_base": measure.of_what == "base",
         }
         for measure in sorted(_measures_on_page(), key=_measure_list_order)
@@ -162,6 +167,7 @@ Checksum = Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")]
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
+MAX_FREE_VIBRATION = 60.0  # s
 MAX_STATE_VALUES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
 MAX_MESSAGES = 50  # messages in one answer
 
@@ -240,22 +246,80 @@ class DesignChoice(TomlTable):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
+class RecordSetChoice(TomlTable):
+    """Records whose responses are one result, and the rule that makes one value for design of them."""
+
+    shown: bool = Field(False, description="true or false")
+    suites: Suites = Field(["chosen"], description="a list of one to four suites")
+    scale: Scale = 1.0
+    model: Name = Field("", description="one of the models; the first if it is none of them")
+    rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
+
+
+LimitOfCheck = Annotated[str, check_of_known_names(lambda: [each.name for each in fields(CheckLimits)])]
+
+
+class Alternative(RunOptionKeys):
+    """A structure that was kept under a name, with its models and their options."""
+
+    name: Annotated[Name, Field(min_length=1, max_length=40, description="a name of at most 40 letters")]
+    structure: StructureEntry = Field(description="a table")
+    models: Labels
+
+
 class PageState(RunOptionKeys):
     """The state of the whole page."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
         "structure", description="the name of a tab"
     )
+    units: SystemName = Field("kN", description='"kN", "MN", "SI" or "kip-in"')
+    language: Language = Field("en", description='"en", "de", "it", "fr" or "es"')
     structure: StructureEntry = Field(description="a table")
     record: RecordChoice = Field(default_factory=lambda: RecordChoice.model_validate({}), description="a table")
     scale: Scale = 1.0
     models: Labels = Field(["MDOF-S", "2DOF-S", "fixed"], description="a list of one to four models")
     free_vibration: float = Field(
-        5.0, ge=0.0, le=60.0, description="the free vibration after the record in s, from 0 to 60"
+        5.0, ge=0.0, le=MAX_FREE_VIBRATION, description="the free vibration after the record in s, from 0 to 60"
     )
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+    alternatives: list[Alternative] = Field(
+        [], max_length=MAX_ALTERNATIVES, description=f"a list of at most {MAX_ALTERNATIVES} tables"
+    )
+    head: dict[Literal["title", "project", "author", "checker"], Name] = Field(
+        default_factory=dict, description="a table of texts of at most 120 letters"
+    )
+
+    record_set: RecordSetChoice = Field(
+        default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
+    )
+    limits: dict[LimitOfCheck, Any] = Field(
+        default_factory=dict, description="a table of the arguments of rockflex.CheckLimits"
+    )
+
+    def head_texts(self) -> dict[str, str]:
+        """Return the texts of the head of reports that are given."""
+        return {name: text for name, text in self.head.items() if text}
+
+    def kept_state(self, alternative: Alternative) -> "PageState":
+        """Return the state with a kept alternative in the place of its structure, models and options."""
+        own = {name: getattr(alternative, name) for name in Alternative.model_fields if name != "name"}
+        usual = {"cloud": CloudChoice.model_validate({}), "design": DesignChoice.model_validate({})}
+        return self.model_copy(update={**own, **usual, "alternatives": []})
+
+    @property
+    def model_of_set(self) -> str:
+        """The model of the set of records: the chosen one, or the first of the Response tab."""
+        return self.record_set.model if self.record_set.model in self.models else self.models[0]
+
+    def check_limits(self, *, friction: bool = True) -> CheckLimits:
+        """Return the limits of the checks; without that of the friction where it would take too long."""
+        try:
+            return CheckLimits(**{name: each for name, each in self.limits.items() if friction or name != "friction"})
+        except InputError as error:
+            raise Refusal({f"limits.{error.field}": str(error)}) from error
 
     def run_options(self, ground: Ground | None) -> RunOptions:
         """Return the options of the runs of the Response tab, on the ground of the structure."""
@@ -294,6 +358,26 @@ def parse_page_state(content: Any) -> PageState:
         raise Refusal(dict([*(ranges | _field_error_messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
+    _check_state(state)
+    names = [each.name for each in state.alternatives]
+    if len(set(names)) < len(names):
+        raise Refusal({"alternatives": "two of them have the same name. Name each differently."})
+    for each in state.alternatives:
+        with refusals_of_alternative(each.name):
+            _check_state(state.kept_state(each))
+    return state
+
+
+@contextmanager
+def refusals_of_alternative(name: str) -> Generator[None]:
+    """Name a kept alternative in refusals, which have no field of the forms then."""
+    try:
+        yield
+    except Refusal as error:
+        raise Refusal({"alternatives": f"{name}: {error}"}, error.status) from error
+
+
+def _check_state(state: PageState) -> None:
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
@@ -301,7 +385,6 @@ def parse_page_state(content: Any) -> PageState:
     check_form_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models_of_state(state)
     _check_run_options_of_state(state)
-    return state
 
 
 def _check_models_of_state(state: PageState) -> None:
@@ -322,6 +405,7 @@ def _check_models_of_state(state: PageState) -> None:
 def _check_run_options_of_state(state: PageState) -> None:
     with errors_as_refusals("restitution"):
         state.law()
+    state.check_limits()
     if state.ground is not None:
         check_form_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:

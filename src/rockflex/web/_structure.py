@@ -47,7 +47,7 @@ def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] |
         "springs": springs.positions[kept],
         "settlement": settlement,
         "facts": [
-            _fact("w", 1e3 * settlement, "mm", "settlement of the axis under the weight"),
+            _fact("w", settlement, "m", "settlement of the axis under the weight") | {"quantity": "displacement"},
             _fact("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
             _fact("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
             _fact("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),

@@ -17,7 +17,7 @@ from rockflex.motion import MEASURES
 from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy, design_table, smallest_width
-from rockflex.web._jobs import StudyJob
+from rockflex.web._jobs import RunsJob, StudyJob
 from rockflex.web._limits import MAX_RUN_COST, check_size_of_study
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._script import cloud_script, design_script
@@ -44,21 +44,27 @@ class StudyPage:
     ----------
     study : callable
         Returns the study of a state, with the records of visitors.
+    job : callable
+        Returns the job that computes a study of this kind.
     view : callable
         Returns what its tab shows of the runs so far, for the choices of a state.
     table, figure : callable
         Return a DataFrame and a Figure of the runs so far. `table_name` and `figure_name` are the names of the files.
     script : callable
         Returns a Python program that repeats the study.
+    report : callable or None
+        Returns the report of the study as a page of HTML, where there is one.
     """
 
     study: Callable[[PageState, UploadedRecords], Any]
-    view: "Callable[[StudyJob, PageState], dict[str, Any]]"
-    table: "Callable[[StudyJob, PageState], pd.DataFrame]"
-    figure: "Callable[[StudyJob, PageState], Any]"
+    view: Callable[[Any, PageState], dict[str, Any]]
+    table: "Callable[[Any, PageState], pd.DataFrame]"
+    figure: Callable[[Any, PageState], Any]
     script: Callable[[PageState, Any], str]
     table_name: str
     figure_name: str
+    job: Callable[[Any, str], RunsJob] = lambda study, kind: StudyJob(study_plan(study, kind), kind)
+    report: Callable[[Any, PageState], str] | None = None
 
 
 def common_study_content(
@@ -320,7 +326,3 @@ DESIGN_PAGE = StudyPage(
     table_name="design",
     figure_name="design",
 )
-
-
-PAGES = {"cloud": CLOUD_PAGE, "design": DESIGN_PAGE}
-"""The kinds of study that the page shows, by their names."""

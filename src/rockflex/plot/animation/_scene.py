@@ -13,6 +13,7 @@ from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex._language import translated
 from rockflex.modal import BaseElement
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
@@ -95,19 +96,20 @@ def structure_state_text(curve: ResponseCurve, poses: StructurePoses, frame: int
     """Return the state of a structure in a frame, such as "uplifted", and the colour of the words."""
     end = float(curve.history.time[-1])
     if curve.overturned and time >= end:
-        return f"overturned at {end:.2f} s", DARK_RED
+        return translated("overturned at {time} s", time=f"{end:.2f}"), DARK_RED
     if curve.falls and time >= float(curve.history.time[curve.before_fall][-1]):
-        return "falling", DARK_RED
+        return translated("falling"), DARK_RED
     if time > end:
-        return f"ends at {end:.2f} s", figures.GRAY
+        return translated("ends at {time} s", time=f"{end:.2f}"), figures.GRAY
     if not poses.lifts:
-        return "fixed base", figures.GRAY
+        return translated("fixed base"), figures.GRAY
     if poses.sprung and poses.rise[frame].min() > 0.0:
-        return "off the ground", figures.BLUE
+        return translated("off the ground"), figures.BLUE
     if poses.impact[frame] and not poses.uplifted[frame]:
-        return "impact", figures.RED
-    texts = [word for word, holds in (("uplifted", poses.uplifted[frame]), ("sliding", poses.sliding[frame])) if holds]
-    return (", ".join(texts), figures.BLUE) if texts else ("in contact", figures.GRAY)
+        return translated("impact"), figures.RED
+    words = {translated("uplifted"): poses.uplifted[frame], translated("sliding"): poses.sliding[frame]}
+    texts = [word for word, holds in words.items() if holds]
+    return (", ".join(texts), figures.BLUE) if texts else (translated("in contact"), figures.GRAY)
 
 
 class MetresToStagePoints(NamedTuple):
@@ -338,8 +340,9 @@ class StructurePanel:
 
 def _animation_scales_text(amplification: float, speed: float) -> str:
     """Say how displacements and time are enlarged."""
-    size = "true displacements" if amplification == 1.0 else f"displacements × {amplification:g}"
-    return size if speed == 1.0 else f"{size}, speed × {speed:g}"
+    size = translated("displacements × {factor}", factor=f"{amplification:g}")
+    size = translated("true displacements") if amplification == 1.0 else size
+    return size if speed == 1.0 else f"{size}, {translated('speed × {factor}', factor=f'{speed:g}')}"
 
 
 class _StructureExtent(NamedTuple):
@@ -407,14 +410,14 @@ class HistoryPanels:
         for axes, quantity in zip(grid, quantities, strict=True):
             self.lines, _ = histories.draw_curves(axes, quantity, curves)
         self.uplifts = histories.shade_uplifts(grid, curves)
-        grid[-1].set_xlabel("time [s]")
+        grid[-1].set_xlabel(translated("time [s]"))
         self._end = float(timing.times[-1])
         grid[-1].set_xlim(float(timing.times[0]), self._end)
         self._future = [_fading_rectangle(axes) for axes in grid]
         self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
         self._dots: list[tuple[Line2D, Array]] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            factor, _, _ = histories.quantity_axis_scale(quantity, curves)
+            factor = histories.quantity_axis_scale(quantity, curves)[0].size
             for curve in curves:
                 dot = _animated_line(
                     axes, curve.style.color, 0.0, marker="o", markersize=4.5, markeredgecolor="white",

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from rockflex._shown import number_with_noun, shortened
+from rockflex._language import translated
+from rockflex._shown import shortened
 from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties
 from rockflex.report.run import _report_tables
@@ -57,10 +58,10 @@ class ComparisonPage(OneSheet):
     def sections(self) -> list[tuple[str, Sequence[Block]]]:
         """The contents with their headings, one below the other as in a document."""
         return [
-            ("Alternatives", [Drawing("outlines"), self.alternatives, self.lines]),
-            (" ".join(("Demands", self.records)).strip(), [self.demands]),
+            (translated("Alternatives"), [Drawing("outlines"), self.alternatives, self.lines]),
+            (" ".join((translated("Demands"), self.records)).strip(), [self.demands]),
             (
-                f"{'Governing record' if self.several else 'Record'}: {self.record.name}",
+                translated("Governing record: {name}" if self.several else "Record: {name}", name=self.record.name),
                 [Drawing("strip", 0.5), self.record.facts, Drawing("sheet")],
             ),
         ]
@@ -72,10 +73,17 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
 
     report = reported_alternatives(comparison, units)
     record = _report_tables.reported_record(report)
-    records, several = number_with_noun(comparison.n_records, "record"), comparison.n_records > 1
-    usual = f"{', '.join(comparison.names)} under {records if several else record.name or 'a ground motion'}"
+    total, several = comparison.n_records, comparison.n_records > 1
+    names, tables = ", ".join(comparison.names), _report_tables
+    usual = tables.title_of_several_text(names, total) if several else tables.title_text(names, record.name)
+    statistics = " / ".join(translated(STATISTICS[each]) for each in SHOWN)
     fell = [
-        f"{name} overturned under {n} of {records}"
+        translated(
+            "{name} overturned under {n} of {total} records" if several else "{name} overturned",
+            name=name,
+            n=n,
+            total=total,
+        )
         for name, n in zip(comparison.names, comparison.overturned, strict=True)
         if n
     ]
@@ -83,7 +91,7 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
         title=shortened(texts.title or usual, MAX_LETTERS["title"]),
         texts=texts,
         several=several,
-        records=f"of {records}: {' / '.join(STATISTICS[each] for each in SHOWN)}" if several else "",
+        records=translated("of {n} records: {statistics}", n=total, statistics=statistics) if several else "",
         alternatives=alternatives_table(comparison, units),
         lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
         demands=demand_table(comparison, units),
@@ -91,7 +99,10 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
         warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
     )
     outlines = draw_alternatives(comparison, width=WIDTH, height=_OUTLINES)
-    return page, {"outlines": ("The alternatives as they rock", outlines), **figures_of_runs(page, record, report)}
+    return page, {
+        "outlines": (translated("The alternatives as they rock"), outlines),
+        **figures_of_runs(page, record, report),
+    }
 
 
 def reported_alternatives(comparison: Comparison, units: UnitSystem) -> ReportedRuns:
@@ -105,8 +116,14 @@ def reported_alternatives(comparison: Comparison, units: UnitSystem) -> Reported
 def alternatives_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     """Return a row for each alternative: its kind, what decides its response, and its elements."""
     mass, length, moment = units.of("mass"), units.of("length"), units.of("moment", "MN m")
-    heads = [("alternative", ""), ("structure", ""), ("m_tot", mass.name), ("B", length.name), ("T_1", "s")]
-    heads += [("M_r", moment.name), ("elements", "")]
+    heads = [
+        (translated("alternative"), ""),
+        (translated("structure"), ""),
+        ("m_tot", mass.name),
+        ("B", length.name),
+        ("T_1", "s"),
+    ]
+    heads += [("M_r", moment.name), (translated("elements"), "")]
     rows: list[Sequence[ReportCell]] = []
     for name, structure in zip(comparison.names, comparison.structures, strict=True):
         p: RockingProperties = structure if isinstance(structure, RockingProperties) else structure.rocking()
@@ -128,7 +145,7 @@ def model_line(comparison: Comparison) -> tuple[str, str]:
     """Return the models as a headed line: one for all, or that of each alternative."""
     labels = [run.model for run in comparison.responses]
     own = ", ".join(f"{name}: {label}" for name, label in zip(comparison.names, labels, strict=True))
-    return "Model", labels[0] if len(set(labels)) == 1 else own
+    return translated("Model"), labels[0] if len(set(labels)) == 1 else own
 
 
 def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
@@ -138,15 +155,15 @@ def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     """
     first, *others = comparison.names
     shown = SHOWN if comparison.n_records > 1 else ("max",)
-    heads = [("demand", ""), *((name, "") for name in comparison.names)]
-    heads += [(f"{name} to {first}", "%") for name in others]
+    heads = [(translated("demand"), ""), *((name, "") for name in comparison.names)]
+    heads += [(translated("{name} to {first}", name=name, first=first), "%") for name in others]
     values = [comparison.demands(each).to_dict("index") for each in shown]
     differences = [comparison.differences(each).to_dict("index") for each in shown]
     rows: list[Sequence[ReportCell]] = []
     for demand in map(str, values[0]):
         known = DEMANDS[demand]
         unit = units.of(known.quantity, largest=float(comparison.runs[demand].max()))
-        cells = [ReportCell(unit.heading(known.compared_as or known.symbol))]
+        cells = [ReportCell(unit.heading(translated(known.compared_as or known.symbol)))]
         cells += [
             _joined([value_cell(each[demand][name], demand, unit.size) for each in values]) for name in comparison.names
         ]

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockflex._language import translated
 from rockflex._units import UnitSystem
 from rockflex.report.run._report_tables import ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
@@ -35,10 +36,10 @@ def _sections_of(structure: Any) -> list[tuple[str, Section]]:
         structure = structure.structure
     if isinstance(structure, TaperedTower):
         material = {"elastic_modulus": structure.elastic_modulus, "density": structure.density}
-        radii = {"base": structure.base_radius, "top": structure.top_radius}
+        radii = {translated("base"): structure.base_radius, translated("top"): structure.top_radius}
         return [(place, Section.tube(2.0 * r, structure.wall, **material)) for place, r in radii.items()]
     section = getattr(structure, "section", None)
-    return [] if section is None else [("whole height", section)]
+    return [] if section is None else [(translated("whole height"), section)]
 
 
 def _section_table(structure: Any, units: UnitSystem) -> ReportTable | None:
@@ -48,8 +49,8 @@ def _section_table(structure: Any, units: UnitSystem) -> ReportTable | None:
         "second_moment": ("I", units.of("second moment of area")),
         "elastic_modulus": ("E", units.of("elastic modulus")),
         "density": ("ρ", units.of("density")),
-        "stiffness_factor": ("factor on EI", units.of("ratio")),
-        "bending_stiffness": ("EI effective", units.of("bending stiffness")),
+        "stiffness_factor": (translated("factor on EI"), units.of("ratio")),
+        "bending_stiffness": (translated("EI effective"), units.of("bending stiffness")),
         "mass_per_length": ("m", units.of("mass per length")),
     }
     rows = [
@@ -59,5 +60,5 @@ def _section_table(structure: Any, units: UnitSystem) -> ReportTable | None:
         ]
         for place, each in found
     ]
-    heads = [("section", ""), *((name, unit.name) for name, unit in columns.values())]
+    heads = [(translated("section"), ""), *((name, unit.name) for name, unit in columns.values())]
     return ReportTable(heads, rows) if rows else None

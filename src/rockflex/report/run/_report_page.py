@@ -8,6 +8,7 @@ from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._language import Language, chosen_language, use_language
 from rockflex._shown import shown
 from rockflex._units import Decimal, SystemName, checked_unit_system, with_decimal_commas
 from rockflex.motion import GroundMotion
@@ -40,7 +41,8 @@ def write_report(
     appendix: bool = False,
     limits: CheckLimits | None = None,
     units: SystemName = "kN",
-    decimal: Decimal = ".",
+    language: Language = "en",
+    decimal: Decimal | None = None,
 ) -> Path:
     """Write the response of a structure to one record on one sheet of A4: HTML that needs no other file, PDF or DOCX.
 
@@ -86,11 +88,14 @@ def write_report(
     limits
         Limits of `check`, whose table the page of a run then has for every model. A set has it always.
     units
-        Units of the tables: ``"kN"`` (kN, kN m or MN m, mm and m, t, g), ``"MN"`` (MN, mm and m, t, g), ``"SI"``
-        (N, m, kg, m/s²) or ``"kip-in"`` (kip, in, kip s²/in, g). Figures and warnings have units of their own.
+        Units of tables and figures: ``"kN"`` (kN, kN m or MN m, mm and m, t, g), ``"MN"`` (MN, mm and m, t, g),
+        ``"SI"`` (N, m, kg, m/s²) or ``"kip-in"`` (kip, in, kip s²/in, g). Warnings have units of their own.
+    language
+        Language of the report: ``"en"``, ``"de"``, ``"it"``, ``"fr"`` or ``"es"``. What users write, such as names,
+        stays as it is.
     decimal
-        The decimal sign of tables and texts, ``"."`` or ``","``; not of figures, nor of the values in the attributes
-        ``data-value``, which are for programs and in SI units.
+        The decimal sign of tables, texts and figures, ``"."`` or ``","``. Default: that of the language, a comma in all
+        but English. The values in the attributes ``data-value``, which are for programs and in SI units, have points.
 
     Returns
     -------
@@ -102,9 +107,9 @@ def write_report(
     InputError
         If there are no responses or more than six, one has no history, they are not of one structure and one record, or
         `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
-        if the friction is not positive, the notes are too long, or `units` or `decimal` is none of these; if there is
-        no browser for a PDF, or python-docx is not installed; if an option is given that a set or a comparison does not
-        take.
+        if the friction is not positive, the notes are too long, or `units`, `language` or `decimal` is none of these;
+        if there is no browser for a PDF, or python-docx is not installed; if an option is given that a set or a
+        comparison does not take.
 
     Examples
     --------
@@ -122,16 +127,16 @@ def write_report(
     target = checked_report_path("path", path)
     given: dict[str, Any] = {"title": title, "date": date, "notes": notes, "project": project, "author": author}
     given |= {"checker": checker, "structure": structure, "motion": motion, "friction": friction}
-    given |= {"units": units, "decimal": decimal}
-    page, figures = _page_of_report(responses, **given, appendix=appendix, limits=limits)
-    if target.suffix.lower() == ".docx":
-        from rockflex.plot import figure_as_png
+    with use_language(language, decimal):
+        page, figures = _page_of_report(responses, units=units, **given, appendix=appendix, limits=limits)
+        if target.suffix.lower() == ".docx":
+            from rockflex.plot import figure_as_png
 
-        drawings = {stem: (label, figure_as_png(figure)) for stem, (label, figure) in figures.items()}
-        content = report_as_word(page, drawings)
-    else:
-        text = page_as_html(page, figures)
-        content = page_as_pdf(text) if target.suffix.lower() == ".pdf" else text.encode()
+            drawings = {stem: (label, figure_as_png(figure)) for stem, (label, figure) in figures.items()}
+            content = report_as_word(page, drawings)
+        else:
+            text = page_as_html(page, figures)
+            content = page_as_pdf(text) if target.suffix.lower() == ".pdf" else text.encode()
     try:
         return write_file_atomically(target, content)
     except OSError as error:
@@ -140,9 +145,16 @@ def write_report(
         ) from error
 
 
-def run_report_as_html(responses: Response | Iterable[Response] | RecordSet | Comparison, **options: Any) -> str:
+def run_report_as_html(
+    responses: Response | Iterable[Response] | RecordSet | Comparison,
+    *,
+    language: Language = "en",
+    decimal: Decimal | None = None,
+    **options: Any,
+) -> str:
     """Return the page of `write_report` with these options as text; no energies and no friction of models `omitted`."""
-    return page_as_html(*_page_of_report(responses, **options))
+    with use_language(language, decimal):
+        return page_as_html(*_page_of_report(responses, **options))
 
 
 def _page_of_report(
@@ -155,25 +167,25 @@ def _page_of_report(
     author: str = "",
     checker: str = "",
     units: SystemName = "kN",
-    decimal: Decimal = ".",
     omitted: Collection[str] = (),
     **options: Any,
 ) -> tuple[ReportPage, Figures]:
     """Return the contents of a report, and its figures; `options` are those of its kind."""
+    from rockflex.plot import figures_in_units
+
     texts = checked_report_texts(title, date, notes, project, author, checker)
     system = checked_unit_system(units)
-    if decimal not in (".", ","):
-        raise InputError(f"decimal must be '.' or ',', but {shown(decimal)} was given.", field="decimal")
     given = {name: value for name, value in options.items() if value is not None and value is not False}
-    if isinstance(responses, RecordSet):
-        _refuse_unused_options("a set", given, ("structure", "limits"))
-        page, figures = set_page(responses, texts, system, **given)
-    elif isinstance(responses, Comparison):
-        _refuse_unused_options("a comparison", given, ())
-        page, figures = comparison_page(responses, texts, system)
-    else:
-        page, figures = run_page(responses, texts, system, omitted=omitted, **options)
-    return _with_decimal_commas(page) if decimal == "," else page, figures
+    with figures_in_units(system):
+        if isinstance(responses, RecordSet):
+            _refuse_unused_options("a set", given, ("structure", "limits"))
+            page, figures = set_page(responses, texts, system, **given)
+        elif isinstance(responses, Comparison):
+            _refuse_unused_options("a comparison", given, ())
+            page, figures = comparison_page(responses, texts, system)
+        else:
+            page, figures = run_page(responses, texts, system, omitted=omitted, **options)
+    return _with_decimal_commas(page) if chosen_language()[1] == "," else page, figures
 
 
 def _with_decimal_commas(part: Any) -> Any:

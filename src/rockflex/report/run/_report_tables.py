@@ -11,6 +11,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
+from rockflex._language import translated
 from rockflex._number_format import rounded_number
 from rockflex._shown import shown
 from rockflex._units import Unit, UnitSystem, named_unit
@@ -37,8 +38,9 @@ _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once
 MAX_COORDINATES = 3  # modes
 MAX_ELEMENTS = 6  # elements
 ROUNDING = 1e-9  # m: drifts that are none
-_LAW, _INITIAL = "Impact law", "Initial state"
+SIDES = ("right", "left")
 STATUS = {"no_uplift": "no uplift", "rocking": "rocking", "overturned": "overturned"}
+ASSUMPTIONS = ("Impact law", "Hysteresis", "Ground", "Friction", "Initial state")
 DAGGER = "†"
 
 
@@ -97,19 +99,19 @@ def reported_record(report: ReportedRuns) -> ReportedRecord:
     longest = max(range(len(report.histories)), key=lambda place: float(report.histories[place].time[-1]))
     history, run = report.histories[longest], report.responses[longest]
     second, g, velocity = (report.units.of(each) for each in ("time", "acceleration", "velocity"))
-    ends = value_fact("Length of the run", float(history.time[-1]), second, "end_time")
+    ends = value_fact(translated("Length of the run"), float(history.time[-1]), second, "end_time")
     pva = float(np.max(np.abs(history.vertical_ground_acceleration), initial=0.0))
-    vertical = [value_fact("PVA, vertical", pva, g, "pva")] if pva > 0.0 else []
+    vertical = [value_fact(translated("PVA, vertical"), pva, g, "pva")] if pva > 0.0 else []
     if report.motion is None:
         time, acceleration = history.time, history.ground_acceleration
         steps = 0.5 * (acceleration[1:] + acceleration[:-1]) * np.diff(time)
         pgv = float(np.max(np.abs(np.cumsum(steps)), initial=0.0))
         pga = float(np.max(np.abs(acceleration)))
         # All runs overturned, and nothing is known of the ground after the last of them did.
-        cut = " during the run" if run.status == "overturned" else ""
+        fell = run.status == "overturned"
         facts = [
-            value_fact(f"PGA{cut}", pga, g, "pga"),
-            value_fact(f"PGV{cut}", pgv, velocity, "pgv"),
+            value_fact(translated("PGA during the run") if fell else "PGA", pga, g, "pga"),
+            value_fact(translated("PGV during the run") if fell else "PGV", pgv, velocity, "pgv"),
             *vertical,
             ends,
         ]
@@ -117,12 +119,12 @@ def reported_record(report: ReportedRuns) -> ReportedRecord:
     motion = report.motion.scaled(report.scale)
     scale = report.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
     facts = [
-        ReportFact("Scale", ReportCell(f"{scale:.6g}", scale, "scale")),
+        ReportFact(translated("Scale"), ReportCell(f"{scale:.6g}", scale, "scale")),
         value_fact("PGA", motion.pga, g, "pga"),
         value_fact("PGV", motion.pgv, velocity, "pgv"),
         *vertical,
-        value_fact("Length of the record", motion.duration, second, "duration"),
-        value_fact("Significant duration D_5–95", motion.d5_95, second, "d5_95"),
+        value_fact(translated("Length of the record"), motion.duration, second, "duration"),
+        value_fact(translated("Significant duration D_5–95"), motion.d5_95, second, "d5_95"),
         ends,
     ]
     upwards = np.zeros_like(motion.time) if motion.vertical is None else motion.vertical
@@ -136,19 +138,35 @@ def _record_source_text(motion: GroundMotion) -> str:
         return ""
     event = " ".join(str(each) for each in (info.event, info.year) if each is not None)
     size = "" if info.magnitude is None else f"M {info.magnitude:g}"
-    vertical = "" if motion.vertical is None or not info.vertical_source else f"vertical: {info.vertical_source}"
+    vertical = (
+        ""
+        if motion.vertical is None or not info.vertical_source
+        else translated("vertical: {source}", source=info.vertical_source)
+    )
     return ", ".join(each for each in (event, size, info.station or "", info.component or "", vertical) if each)
+
+
+def title_text(what: str, record: str) -> str:
+    """Return the title of a report without one of its own."""
+    return translated("{structure} under {record}", structure=what, record=record or translated("a ground motion"))
+
+
+def title_of_several_text(what: str, n: int) -> str:
+    """Return the title of a report on some records without one of its own."""
+    return translated(
+        "{structure} under {n} record" if n == 1 else "{structure} under {n} records", structure=what, n=n
+    )
 
 
 def structure_kind_text(structure: Any) -> str:
     """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
     if isinstance(structure, RockingProperties):
-        return "Structure given by its rocking properties" if structure.n_modes else "Rigid block"
+        return translated("Structure given by its rocking properties" if structure.n_modes else "Rigid block")
     around: list[str] = []
     while hasattr(structure, "structure"):  # restrained or eccentric
-        around.append(_class_name_in_words(structure).lower())
+        around.append(translated(_class_name_in_words(structure).lower()))
         structure = structure.structure
-    return ", ".join([_class_name_in_words(structure), *around])
+    return ", ".join([translated(_class_name_in_words(structure)), *around])
 
 
 def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:
@@ -158,43 +176,55 @@ def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     pivot = p.weaker_pivot
     slope = "h*_1/B" if p.n_modes else "h/B"
-    base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, mass, "base_mass")]
-    top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, length, "top_height")]
+    base = (
+        [] if p.base_mass is None else [value_fact(translated("Mass of the base m_0"), p.base_mass, mass, "base_mass")]
+    )
+    top = (
+        []
+        if p.top_height is None
+        else [value_fact(translated("Height of the top"), p.top_height, length, "top_height")]
+    )
     leaning = [
-        value_fact("Leaning mass", p.leaning_mass, mass, "leaning_mass", 4),
-        value_fact("Share of the weight on the base", 100.0 * p.weight_share, Unit(1.0, "%"), "weight_share"),
+        value_fact(translated("Leaning mass"), p.leaning_mass, mass, "leaning_mass", 4),
+        value_fact(
+            translated("Share of the weight on the base"), 100.0 * p.weight_share, Unit(1.0, "%"), "weight_share"
+        ),
     ]
-    shift = [value_fact("Eccentricity e", p.eccentricity, length, "eccentricity")] if p.eccentricity else []
-    held = [value_fact("Prestress of the tendons", p.prestress, units.of("force"), "prestress")] if p.tendons else []
+    shift = [value_fact(translated("Eccentricity e"), p.eccentricity, length, "eccentricity")] if p.eccentricity else []
+    held = (
+        [value_fact(translated("Prestress of the tendons"), p.prestress, units.of("force"), "prestress")]
+        if p.tendons
+        else []
+    )
     return [
-        ReportFact("Modes", ReportCell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
-        value_fact("Total mass m_tot", p.m_tot, mass, "m_tot", 4),
+        ReportFact(translated("Modes"), ReportCell(str(p.n_modes or translated("none (rigid)")), p.n_modes, "n_modes")),
+        value_fact(translated("Total mass m_tot"), p.m_tot, mass, "m_tot", 4),
         *(leaning if p.leaning_mass else []),
         *base,
         *top,
-        value_fact("Half width of the base B", p.half_width, length, "half_width"),
+        value_fact(translated("Half width of the base B"), p.half_width, length, "half_width"),
         *shift,
-        value_fact(f"Slenderness {slope}", height / p.half_width, ratio, "slenderness"),
+        value_fact(translated("Slenderness {ratio}", ratio=slope), height / p.half_width, ratio, "slenderness"),
         *_rotation_limit_facts(p, units.of("rotation")),
-        value_fact("Inertia about a pivot I_θ", pivot.i_theta, units.of("inertia"), "i_theta", 4),
+        value_fact(translated("Inertia about a pivot I_θ"), pivot.i_theta, units.of("inertia"), "i_theta", 4),
         *held,
-        value_fact("Resisting moment M_r", p.resisting_moment, moment, "resisting_moment", 4),
-        value_fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, g, "uplift_acceleration"),
+        value_fact(translated("Resisting moment M_r"), p.resisting_moment, moment, "resisting_moment", 4),
+        value_fact(translated("Uplift at a_lift = M_r/L_0"), p.uplift_acceleration, g, "uplift_acceleration"),
     ]
 
 
 def _rotation_limit_facts(p: RockingProperties, unit: Unit) -> list[ReportFact]:
     """Return θ_nom, and α where the static moment vanishes at all; about both edges if they differ."""
     height, found = "h*_1" if p.n_modes else "h", list[ReportFact]()
-    for pivot, name, width in zip(p.pivots, ("right", "left"), ("B − e", "B + e"), strict=False):
+    for pivot, name, width in zip(p.pivots, SIDES, ("B − e", "B + e"), strict=False):
         one = p.symmetric
-        label = "θ_nom" if one else f"θ_nom {name}"
+        label = "θ_nom" if one else f"θ_nom {translated(name)}"
         arm = "B" if not p.eccentricity else f"({width})"
         nominal, end = pivot.nominal_overturning_rotation, "" if one else f"_{name}"
         found.append(value_fact(f"{label} = 0.7 atan({arm}/{height})", nominal, unit, f"nominal{end}"))
         if math.isfinite(pivot.balance_rotation):
             slope = "(L_0 g)" if not p.tendons else "(L_0 g − k_t)"
-            label = f"α{'' if one else f' {name}'} = M_r/{slope}"
+            label = f"α{'' if one else f' {translated(name)}'} = M_r/{slope}"
             found.append(value_fact(label, pivot.balance_rotation, unit, f"alpha{end}"))
     return found
 
@@ -221,7 +251,7 @@ def mode_table(p: RockingProperties, units: UnitSystem) -> ReportTable | None:
         total, empty = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ"), ReportCell("")
         rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
-    heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", length.name)]
+    heads = [(translated("mode"), ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", length.name)]
     heads += [("ζ_n", "%"), ("ζ*_n", "%")]
     return ReportTable(heads, rows)
 
@@ -263,27 +293,27 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
 
     What does not hold for all runs, or an impact law for all that have one, is followed by the labels of its runs.
     """
-    found: dict[str, dict[str, list[str]]] = {head: {} for head in (_LAW, "Hysteresis", "Ground", "Friction", _INITIAL)}
+    found: dict[str, dict[str, list[str]]] = {head: {} for head in ASSUMPTIONS}
     for label, history in zip(report.labels, report.histories, strict=True):
         for head, text in _assumption_lines_of_run(history, report.units):
             found[head].setdefault(text, []).append(label)
     lines: list[tuple[str, str]] = []
     for head, texts in found.items():
-        among = sum(map(len, texts.values())) if head == _LAW else len(report.labels)
+        among = sum(map(len, texts.values())) if head == "Impact law" else len(report.labels)
         each = [text if len(runs) == among else f"{text} ({', '.join(runs)})" for text, runs in texts.items()]
-        lines += [(head, "; ".join(each))] if each else []
+        lines += [(translated(head), "; ".join(each))] if each else []
     return lines
 
 
 def _assumption_lines_of_run(history: History, units: UnitSystem) -> list[tuple[str, str]]:
     """Return the assumptions of one run."""
     model = history.model
-    lines = [(_LAW, _impact_law_text(model.law))] if follows_impact_law(model) else []
+    lines = [("Impact law", _impact_law_text(model.law))] if follows_impact_law(model) else []
     if model.bouc_wen is not None:
         lines.append(("Hysteresis", _hysteresis_text(model.bouc_wen, units)))
     lines += _ground_lines(model, units)
     start = initial_state_text(history, units)
-    return [*lines, *([(_INITIAL, start)] if start else [])]
+    return [*lines, *([("Initial state", start)] if start else [])]
 
 
 def follows_impact_law(model: Any) -> bool:
@@ -293,18 +323,19 @@ def follows_impact_law(model: Any) -> bool:
 
 def _impact_law_text(law: Any) -> str:
     if isinstance(law, Restitution):
-        return f"Restitution, e = {rounded_number(law.e)}"
+        return translated("Restitution, e = {e}", e=rounded_number(law.e))
     if isinstance(law, SidedRestitution):
         right, left = rounded_number(law.right.e), rounded_number(law.left.e)
-        return f"Restitution, e = {right} from the right and {left} from the left edge"
+        return translated(
+            "Restitution, e = {right} from the right and {left} from the left edge", right=right, left=left
+        )
     return getattr(law, "description", type(law).__name__)
 
 
 def _hysteresis_text(b: Any, units: UnitSystem) -> str:
-    return (
-        f"Bouc–Wen, D_y = {units.text(b.yield_displacement, 'displacement')}, post-yield ratio {b.post_yield_ratio:g}, "
-        f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
-    )
+    start = f"Bouc–Wen, D_y = {units.text(b.yield_displacement, 'displacement')}"
+    ratio = translated("post-yield ratio {ratio}", ratio=f"{b.post_yield_ratio:g}")
+    return f"{start}, {ratio}, γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
 
 
 def _ground_lines(model: Any, units: UnitSystem) -> list[tuple[str, str]]:
@@ -315,13 +346,19 @@ def _ground_lines(model: Any, units: UnitSystem) -> list[tuple[str, str]]:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
         parts = [
-            f"{springs.n} springs without tension",
-            f"x = {rounded_number(float(springs.positions[0]) / length.size)} to "
-            f"{units.text(float(springs.positions[-1]), 'length')}",
+            translated("{n} springs without tension", n=springs.n),
+            translated(
+                "x = {first} to {last}",
+                first=rounded_number(float(springs.positions[0]) / length.size),
+                last=units.text(float(springs.positions[-1]), "length"),
+            ),
             f"Σk = {units.text(springs.total_stiffness, 'stiffness')}",
             f"Σk x² = {units.text(springs.rotational_stiffness, 'rotational stiffness')}",
-            f"Σc = {units.text(springs.total_damping, 'damping')} "
-            f"({rounded_number(100.0 * ratio)} % of critical in heave)",
+            translated(
+                "Σc = {damping} ({percent} % of critical in heave)",
+                damping=units.text(springs.total_damping, "damping"),
+                percent=rounded_number(100.0 * ratio),
+            ),
         ]
         if inertia > 1e-9 * model.inertia:
             parts.append(f"I_b = {units.text(inertia, 'inertia')}")
@@ -329,8 +366,8 @@ def _ground_lines(model: Any, units: UnitSystem) -> list[tuple[str, str]]:
     friction = ground_friction_range(model)
     if friction is not None:
         least, most = friction
-        span = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
-        lines.append(("Friction", f"the base slides at μ = {span}"))
+        span = f"{least:.4g}" if least == most else f"{least:.4g}–{most:.4g}"
+        lines.append(("Friction", translated("the base slides at μ = {friction}", friction=span)))
     return lines
 
 
@@ -361,13 +398,13 @@ def element_table(report: ReportedRuns) -> ReportTable | None:
     if not (elements or stories) or not runs:
         return None
     units, names = report.units, [report.units.of(each).name for each in ("length", "force", "displacement")]
-    heads = [("element", ""), ("x", names[0]), ("properties", ""), ("F_max", names[1]), ("δ_max", names[2])]
-    heads.append(("state", ""))
+    heads = [(translated("element"), ""), ("x", names[0]), (translated("properties"), ""), ("F_max", names[1])]
+    heads += [("δ_max", names[2]), (translated("state"), "")]
     rows = [_element_table_row(k, elements, runs, units) for k in range(len(elements))]
     rows += [_story_table_row(each, runs, units) for each in stories]
     if len(rows) > MAX_ELEMENTS:
         blank = ReportCell("")
-        rows[MAX_ELEMENTS:] = [[ReportCell(f"and {len(rows) - MAX_ELEMENTS} more"), *[blank] * 5]]
+        rows[MAX_ELEMENTS:] = [[ReportCell(translated("and {n} more", n=len(rows) - MAX_ELEMENTS)), *[blank] * 5]]
     return ReportTable(heads, rows)
 
 
@@ -378,13 +415,15 @@ def _story_table_row(story: YieldingStory, runs: Sequence[Response], units: Unit
     force = story.yield_force * (min(ductility, 1.0) + story.post_yield_ratio * beyond)
     drift = ductility * story.yield_force / story.stiffness
     properties = f"k = {units.text(story.stiffness, 'stiffness')}, F_y = {units.text(story.yield_force, 'force')}"
+    after = translated("post-yield ratio {ratio}", ratio=f"{story.post_yield_ratio:.4g}")
+    remains = translated("{drift} left", drift=units.text(left if left > ROUNDING else 0.0, "displacement"))
     return [
-        ReportCell(f"story {story.floor}"),
+        ReportCell(translated("story {number}", number=story.floor)),
         ReportCell(""),
-        ReportCell(f"{properties}, post-yield ratio {story.post_yield_ratio:.4g}"),
+        ReportCell(f"{properties}, {after}"),
         value_cell(force, f"max_story_force_{story.floor}", units.of("force").size),
         value_cell(drift, f"max_story_drift_{story.floor}", units.of("displacement").size),
-        ReportCell(f"μ = {ductility:.2f}, {units.text(left if left > ROUNDING else 0.0, 'displacement')} left"),
+        ReportCell(f"μ = {ductility:.2f}, {remains}"),
     ]
 
 
@@ -397,7 +436,7 @@ def _element_table_row(
     name, properties, state = describe_element(element, units)
     return [
         ReportCell(f"{place + 1} {name}"),
-        ReportCell(element.where)
+        ReportCell(element.where_in(units.of("length")))
         if element.attached
         else value_cell(element.position, "position", units.of("length").size),
         ReportCell(properties),
@@ -411,22 +450,30 @@ def describe_element(element: BaseElement, units: UnitSystem) -> tuple[str, str,
     """Return kind, properties, and the words for an element that did not, or did, yield."""
     if isinstance(element, ElementLaw):
         values = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
-        return element.words, ", ".join(f"{name} = {shown(value)}" for name, value in values.items()), ("", "yielded")
+        properties = ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
+        return translated(element.words), properties, ("", translated("yielded"))
     if isinstance(element, ViscousDamper):
-        return "viscous damper", f"c = {units.text(element.coefficient, 'damping')}", ("", "")
+        return translated("viscous damper"), f"c = {units.text(element.coefficient, 'damping')}", ("", "")
     if isinstance(element, FrictionDamper):
-        return "friction damper", f"F_0 = {units.text(element.force, 'force')}", ("did not slide", "slid")
+        states = (translated("did not slide"), translated("slid"))
+        return translated("friction damper"), f"F_0 = {units.text(element.force, 'force')}", states
     stiffness = f"k = {units.text(element.stiffness, 'stiffness')}"
     limit = "" if element.yield_force is None else f", F_y = {units.text(element.yield_force, 'force')}"
-    after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
+    ratio = "" if element.post_yield_ratio is None else f"{element.post_yield_ratio:.4g}"
+    after = ratio and ", " + translated("post-yield ratio {ratio}", ratio=ratio)
     longest = element.rupture_elongation
-    breaks = "" if longest is None else f", breaks at {units.text(longest, 'displacement')}"
+    breaks = (
+        ""
+        if longest is None
+        else ", " + translated("breaks at {elongation}", elongation=units.text(longest, "displacement"))
+    )
     if isinstance(element, Tendon):
-        state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")
+        state = (translated("elastic"), translated("beyond F_y" if element.post_yield_ratio is None else "yielded"))
         start = f"F_0 = {units.text(element.initial_force, 'force')}, "
-        return "tendon", start + stiffness + limit + after + breaks, state
-    only = ", tension only" if element.tension_only else ""
-    return "yielding dissipator", stiffness + limit + after + breaks + only, ("elastic", "yielded")
+        return translated("tendon"), start + stiffness + limit + after + breaks, state
+    only = ", " + translated("tension only") if element.tension_only else ""
+    states = (translated("elastic"), translated("yielded"))
+    return translated("yielding dissipator"), stiffness + limit + after + breaks + only, states
 
 
 def largest_rotations(run: Response, history: History) -> dict[int, float]:
@@ -454,7 +501,7 @@ def peak_table(report: ReportedRuns) -> ReportTable:
     rows: list[list[ReportCell]] = []
     for label, run, history in zip(report.labels, report.responses, report.histories, strict=True):
         fell = run.status == "overturned"
-        words = STATUS[run.status] if history.model.lifts else "fixed base"
+        words = translated(STATUS[run.status] if history.model.lifts else "fixed base")
         status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", run.nominal_overturning)
         share = None if fell else nominal_rotation_share(report.properties, run, history)
         shaken = None if run.floors is None else float(np.max(run.floors.floor_acceleration))
@@ -464,7 +511,8 @@ def peak_table(report: ReportedRuns) -> ReportTable:
             for of, (_, unit) in columns.items()
         ]
         rows.append([ReportCell(label), status, *cells, ReportCell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
-    heads = [("model", ""), ("status", ""), *((name, unit.name) for name, unit in columns.values()), ("uplifts", "")]
+    columns_of_values = [(name, unit.name) for name, unit in columns.values()]
+    heads = [(translated("model"), ""), (translated("status"), ""), *columns_of_values, (translated("uplifts"), "")]
     return ReportTable(heads, rows)
 
 
@@ -474,13 +522,16 @@ def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, Unit]]:
     displacement, force = units.of("displacement"), units.of("force")
     moment = units.of("moment", largest=max(run.max_base_moment for run in report.responses))
     floors = {"floor_acceleration": ("a_floor", units.of("acceleration"))}
-    slip = {"max_slip": ("slip", displacement), "residual_slip": ("slip left", displacement)}
-    edges = {"max_edge_uplift": ("edge up", displacement), "max_edge_settlement": ("edge down", displacement)}
+    slip = {"max_slip": (translated("slip"), displacement), "residual_slip": (translated("slip left"), displacement)}
+    edges = {
+        "max_edge_uplift": (translated("edge up"), displacement),
+        "max_edge_settlement": (translated("edge down"), displacement),
+    }
     return {
         "max_rotation": ("θ_max", units.of("rotation")),
         "nominal_share": ("θ_max/θ_nom", units.of("share")),
-        "max_top_displacement": ("u_top relative", displacement),
-        "max_total_top_displacement": ("u_top total", displacement),
+        "max_top_displacement": (translated("u_top relative"), displacement),
+        "max_total_top_displacement": (translated("u_top total"), displacement),
         "max_base_shear": ("V_b", force),
         "max_base_moment": ("M_b", moment),
         **(floors if any(run.floors is not None for run in report.responses) else {}),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from rockflex._errors import InputError, SolverError
+from rockflex._language import translated
 from rockflex._number_format import rounded_number
 from rockflex._units import UnitSystem
 from rockflex.report.run._report_tables import (
@@ -19,7 +20,6 @@ from rockflex.report.run._report_tables import (
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response, check_in_units
 
-NOT_COMPUTED = "not computed"
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad
 MAX_SETTLING_TIME = 5.0  # s of computing, for a base to come to rest
@@ -62,31 +62,35 @@ def run_check_table(report: ReportedRuns, friction: float | None, omitted: Colle
         for label, response, history in zip(report.labels, report.responses, report.histories, strict=True)
     ]
     columns = {
-        "uplift": _uplift_cell,
-        "overturning": partial(_overturning_cell, report),
-        "contact": _contact_cell,
-        "friction": _friction_cell,
+        translated("uplift"): _uplift_cell,
+        translated("overturning"): partial(_overturning_cell, report),
+        translated("contact"): _contact_cell,
+        translated("friction"): _friction_cell,
     }
     if report.properties.tendons:
-        columns["tendons"] = _tendon_cell
+        columns[translated("tendons")] = _tendon_cell
     if report.properties.elements:
-        columns["re-centring"] = partial(_residual_rotation_cell, report)
-    columns["energy balance"] = _energy_balance_cell
+        columns[translated("re-centring")] = partial(_residual_rotation_cell, report)
+    columns[translated("energy balance")] = _energy_balance_cell
     return ReportTable(
-        [(name, "") for name in ("model", *columns)],
+        [(name, "") for name in (translated("model"), *columns)],
         [[ReportCell(run.label), *(check(run) for check in columns.values())] for run in runs],
     )
 
 
 def _uplift_cell(run: CheckedRun) -> ReportCell:
     if not run.history.model.lifts:
-        return ReportCell("fixed base")
+        return ReportCell(translated("fixed base"))
     times = run.history.uplift_times
     # On springs, off the ground is where an edge is.
-    start = "starts uplifted" if run.history.uplifted[0] else ""
+    start = translated("starts uplifted") if run.history.uplifted[0] else ""
     if run.response.n_uplifts == 0 or not times.size:
-        return ReportCell(start or "none", 0.0, "n_uplifts")
-    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded_number(float(times[0]))} s"
+        return ReportCell(start or translated("none"), 0.0, "n_uplifts")
+    first = translated(
+        "{n}×, next at {time} s" if start else "{n}×, first at {time} s",
+        n=run.response.n_uplifts,
+        time=rounded_number(float(times[0])),
+    )
     return ReportCell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
 
 
@@ -96,9 +100,9 @@ def _overturning_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell:
         return ReportCell("–")
     if run.response.status == "overturned":
         end = run.response.end_time
-        return ReportCell(f"overturned at {rounded_number(end)} s", end, "end_time", True)
+        return ReportCell(translated("overturned at {time} s", time=rounded_number(end)), end, "end_time", True)
     if run.response.max_rotation == 0.0:
-        return ReportCell("no rotation", 0.0, "max_rotation")
+        return ReportCell(translated("no rotation"), 0.0, "max_rotation")
     margin = overturning_margin(report.properties, run.response, run.history)
     beyond = run.response.nominal_overturning
     return ReportCell(f"{rounded_number(margin)} {'<' if beyond else '≥'} 1", margin, "overturning_margin", beyond)
@@ -108,13 +112,18 @@ def _contact_cell(run: CheckedRun) -> ReportCell:
     least = run.response.min_vertical_reaction
     if run.history.model.springs is not None:
         if not (run.long and has_bearing_area(run.history)):
-            return ReportCell("springs only push", least, "min_vertical_reaction")
+            return ReportCell(translated("springs only push"), least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
         size = run.units.of("stress").size
-        words = f"q {run.units.text(bearing, 'stress')}, {rounded_number(soil / size)} at a spring"
+        words = translated(
+            "q {bearing}, {spring} at a spring",
+            bearing=run.units.text(bearing, "stress"),
+            spring=rounded_number(soil / size),
+        )
         return ReportCell(words, bearing, "bearing_pressure")
     held = least >= 0.0
-    words = "N ≥ 0" if held else f"N < 0 at {rounded_number(run.response.time_of_min_vertical_reaction)} s"
+    when = rounded_number(run.response.time_of_min_vertical_reaction)
+    words = "N ≥ 0" if held else translated("N < 0 at {time} s", time=when)
     return ReportCell(words, least, "min_vertical_reaction", not held)
 
 
@@ -123,16 +132,18 @@ def _friction_cell(run: CheckedRun) -> ReportCell:
     limits = ground_friction_range(run.history.model)
     if limits is not None:
         moved = run.response.max_slip
-        words = f"slides {run.units.text(moved, 'displacement')}" if moved else "does not slide"
+        far = run.units.text(moved, "displacement")
+        words = translated("slides {slip}", slip=far) if moved else translated("does not slide")
         return ReportCell(words, moved, "max_slip")
     if not run.long:
-        return ReportCell(NOT_COMPUTED)
+        return ReportCell(translated("not computed"))
     try:
         whole = run.history.required_friction
         needed = run.history.required_friction_excluding_impacts()
     except InputError:
-        return ReportCell(NOT_COMPUTED)
-    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded_number(whole)} with impacts)"
+        return ReportCell(translated("not computed"))
+    spikes = translated(" ({friction} with impacts)", friction=rounded_number(whole))
+    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else spikes
     if run.friction is None:
         return ReportCell(f"μ ≥ {rounded_number(needed)}{spikes}", needed, "required_friction")
     slips = needed > run.friction
@@ -147,7 +158,7 @@ def _tendon_cell(run: CheckedRun) -> ReportCell:
     if math.isnan(used):
         return ReportCell(run.units.text(force, "force"), force, "max_tendon_force")
     sign = ">" if used > 1.0 else "≤"
-    words = ", yields" if run.response.tendon_yield and not run.response.tendon_overload else ""
+    words = translated(", yields") if run.response.tendon_yield and not run.response.tendon_overload else ""
     return ReportCell(f"F/F_y = {rounded_number(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
 
 
@@ -160,18 +171,24 @@ def _residual_rotation_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell
     if math.isfinite(p.recentring_ratio):
         turned = response.max_rotation
         ratios = f"; λ = {rounded_number(p.recentring_ratio)}"
-        ratios += f", {rounded_number(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
+        there = rounded_number(p.recentring_ratio_at(turned))
+        ratios += translated(", {ratio} at θ_max", ratio=there) if turned > 0.0 else ""
     left = _settled_rotation(run)
     if left is None:
         now = run.units.text(response.residual_rotation, "rotation")
-        return ReportCell(f"not settled, θ = {now}{ratios}", response.residual_rotation, "residual_rotation")
+        return ReportCell(
+            translated("not settled, θ = {rotation}", rotation=now) + ratios,
+            response.residual_rotation,
+            "residual_rotation",
+        )
     if math.isnan(left):
-        return ReportCell(f"overturns after the run{ratios}", None, "settled_rotation", True)
+        return ReportCell(translated("overturns after the run") + ratios, None, "settled_rotation", True)
     if abs(left) < MAX_CLOSED_ROTATION:
-        return ReportCell(f"closes{ratios}", left, "settled_rotation")
+        return ReportCell(translated("closes") + ratios, left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
     wrong = abs(left) > MAX_TILT or run.history.model.springs is None
-    return ReportCell(f"θ = {run.units.text(left, 'rotation')} left{ratios}", left, "settled_rotation", wrong)
+    words = translated("θ = {rotation} left", rotation=run.units.text(left, "rotation"))
+    return ReportCell(words + ratios, left, "settled_rotation", wrong)
 
 
 def _settled_rotation(run: CheckedRun) -> float | None:
@@ -187,13 +204,13 @@ def _settled_rotation(run: CheckedRun) -> float | None:
 def _energy_balance_cell(run: CheckedRun) -> ReportCell:
     """Show the error of the energy balance over the input."""
     if not run.long:
-        return ReportCell(NOT_COMPUTED)
+        return ReportCell(translated("not computed"))
     try:
         error = run.history.energy.closing_error
     except InputError:
-        return ReportCell(NOT_COMPUTED)
+        return ReportCell(translated("not computed"))
     if error <= BALANCED:
-        return ReportCell(f"closes to {_power_of_ten_text(error)}", error, "closing_error")
+        return ReportCell(translated("closes to {error}", error=_power_of_ten_text(error)), error, "closing_error")
     return value_cell(error, "closing_error", wrong=True)
 
 
@@ -206,27 +223,44 @@ def run_check_legend(report: ReportedRuns, friction: float | None, *, omitted: b
     """Return the legend of the columns."""
     models = [history.model for history in report.histories]
     slides = [ground_friction_range(model) is not None for model in models]
-    nearer = ", to the side that is nearer to it" if report.properties.eccentricity else ""
-    limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
-    lines = [f"Overturning: nominal limit θ_nom over θ_max{nearer}."]
+    lines = [
+        translated("Overturning: nominal limit θ_nom over θ_max, to the side that is nearer to it.")
+        if report.properties.eccentricity
+        else translated("Overturning: nominal limit θ_nom over θ_max.")
+    ]
     if not all(slides):
-        lines.append(f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.")
+        window = f"{IMPACT_WINDOW:g}"
+        lines.append(
+            translated("Friction: largest |ΣF_x|/N without the {window} s after each impact.", window=window)
+            if friction is None
+            else translated(
+                "Friction: largest |ΣF_x|/N without the {window} s after each impact, to be below the μ = {friction} "
+                "given.",
+                window=window,
+                friction=f"{friction:.4g}",
+            )
+        )
     if any(slides):
-        lines.append("Friction of a base that can slide: how far it does.")
+        lines.append(translated("Friction of a base that can slide: how far it does."))
     if any(map(has_bearing_area, report.histories)):
         lines.append(
-            "Contact: q, the largest static bearing pressure of the effective area, and of a spring with its dashpot."
+            translated(
+                "Contact: q, the largest static bearing pressure of the effective area, and of a spring with its "
+                "dashpot."
+            )
         )
     if report.properties.elements:
-        lines.append("Re-centring: what remains when the base is at rest, in free vibration after the run.")
-    lines.append("Energy balance: its largest error over the input energy.")
+        lines.append(translated("Re-centring: what remains when the base is at rest, in free vibration after the run."))
+    lines.append(translated("Energy balance: its largest error over the input energy."))
     if any(map(follows_impact_law, models)):
         lines.append(
-            "Forces with an impact law: without the impulse of impacts, and on rigid ground without rebound; on stiff "
-            "ground that rebounds V_b of flexural structures may be larger."
+            translated(
+                "Forces with an impact law: without the impulse of impacts, and on rigid ground without rebound; on "
+                "stiff ground that rebounds V_b of flexural structures may be larger."
+            )
         )
     if omitted:
-        lines.append(f"{NOT_COMPUTED.capitalize()}: energies and friction of a run that would take too long here.")
+        lines.append(translated("Not computed: energies and friction of a run that would take too long here."))
     return lines
 
 
@@ -237,10 +271,10 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable], units
         for each in table.rows:
             rows.setdefault(each.name, [None] * len(tables))[place] = each
     heads = [
-        ("check (ratio)", ""),
+        (translated("check (ratio)"), ""),
         *((label, "") for label in labels),
-        ("limit", ""),
-        ("source of the limit", ""),
+        (translated("limit"), ""),
+        (translated("source of the limit"), ""),
     ]
     body: list[list[ReportCell]] = []
     for name, found in rows.items():
@@ -251,10 +285,10 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable], units
         cells = [ReportCell("–") if each is None else _limit_check_cell(each, units) for each in found]
         body.append(
             [
-                ReportCell(name),
+                ReportCell(translated(name)),
                 *cells,
                 ReportCell(words),
-                ReportCell(first.source or (first.note if len(tables) == 1 else "–")),
+                ReportCell(translated(first.source) or (first.note if len(tables) == 1 else "–")),
             ]
         )
     return ReportTable(heads, body)
@@ -263,8 +297,10 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable], units
 def _limit_check_cell(row: Check, units: UnitSystem) -> ReportCell:
     demand, _, unit = check_in_units(row, units)
     if math.isnan(demand):
-        return ReportCell("overturns", None, "demand", True)
-    ratio = "" if row.ratio is None else f" ({rounded_number(row.ratio)})"
+        return ReportCell(translated("overturns"), None, "demand", True)
+    ratio = ""
+    if row.ratio is not None:
+        ratio = f" ({rounded_number(row.ratio)}, {translated('ok' if row.ok else 'fails')})"
     return ReportCell(
         f"{rounded_number(demand)} {unit}".rstrip().replace(" ", NO_BREAK) + ratio,
         row.demand,
@@ -275,4 +311,5 @@ def _limit_check_cell(row: Check, units: UnitSystem) -> ReportCell:
 
 def missing_checks_text(table: CheckTable) -> str:
     """Return what was not checked, and why, in a sentence for each reason."""
-    return "".join(f"Not checked: {name}: {lacks}. " for name, lacks in table.missing if NO_LIMIT not in lacks)
+    lacking = [(translated(name), lacks) for name, lacks in table.missing if NO_LIMIT not in lacks]
+    return " ".join(translated("Not checked: {name}: {reason}.", name=name, reason=lacks) for name, lacks in lacking)

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._shown import shortened
 from rockflex._units import UnitSystem
 from rockflex.motion import GroundMotion
@@ -70,15 +71,15 @@ class RunPage(OneSheet):
     @property
     def sections(self) -> list[tuple[str, Sequence[Block]]]:
         """The contents with their headings, one below the other as in a document."""
-        ground = [("Base and ground", [self.lines, self.elements])] if self.lines or self.elements else []
+        ground = [(translated("Base and ground"), [self.lines, self.elements])] if self.lines or self.elements else []
         more = [Drawing(f"loops{place}") for place in range(len(self.appendix.loops))]
         return [
-            (f"Structure: {self.kind}", [self.facts, self.modes]),
-            (f"Record: {self.record.name}", [Drawing("strip", 0.5), self.record.facts]),
+            (translated("Structure: {kind}", kind=self.kind), [self.facts, self.modes]),
+            (translated("Record: {name}", name=self.record.name), [Drawing("strip", 0.5), self.record.facts]),
             *ground,
-            ("Largest values", [Drawing("sheet"), self.peaks]),
-            ("Checks", [self.checks, *self.legend, self.limits]),
-            *([("Appendix", [self.appendix.sections, *more])] if self.appendix else []),
+            (translated("Largest values"), [Drawing("sheet"), self.peaks]),
+            (translated("Checks"), [self.checks, *self.legend, self.limits]),
+            *([(translated("Appendix"), [self.appendix.sections, *more])] if self.appendix else []),
         ]
 
 
@@ -102,7 +103,7 @@ def run_page(
     left_out = labels_of_long_runs(report).union(omitted)
     fell = any(run.status == "overturned" for run in report.responses)
     page = RunPage(
-        title=shortened(texts.title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
+        title=shortened(texts.title or _report_tables.title_text(kind, record.name), MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
         facts=_report_tables.structure_facts(report.properties, units),
@@ -113,7 +114,7 @@ def run_page(
         peaks=_report_tables.peak_table(report),
         checks=run_check_table(report, coefficient, left_out),
         legend=[
-            *[f"{_report_tables.DAGGER} The values of a run that overturned include its fall."] * fell,
+            *[translated("† The values of a run that overturned include its fall.")] * fell,
             *run_check_legend(report, coefficient, omitted=bool(left_out)),
         ],
         limits=None if limits is None else _limits_of_runs(report, limits, left_out),
@@ -130,7 +131,10 @@ def figures_of_runs(page: OneSheet, record: ReportedRecord, report: ReportedRuns
 
     strip = draw_record_strip(record.time, record.acceleration, width=STRIP[0], height=STRIP[1])
     sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
-    return {"strip": ("Ground acceleration", strip), "sheet": ("Histories and loops of all models", sheet)}
+    return {
+        "strip": (translated("Ground acceleration"), strip),
+        "sheet": (translated("Histories and loops of all models"), sheet),
+    }
 
 
 def _figures_of_appendix(page: RunPage, report: ReportedRuns) -> dict[str, tuple[str, Any]]:
@@ -138,7 +142,10 @@ def _figures_of_appendix(page: RunPage, report: ReportedRuns) -> dict[str, tuple
 
     size: Any = "page" if len(report.properties.elements) > _FEW else (7.2, 4.2)  # of which a sheet has room for two
     return {
-        f"loops{place}": (f"Loops of base and elements, {label}", plot_loops(run, title="", size=size))
+        f"loops{place}": (
+            translated("Loops of base and elements, {label}", label=label),
+            plot_loops(run, title="", size=size),
+        )
         for place, (label, run) in enumerate(page.appendix.loops)
     }
 

@@ -4,19 +4,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from rockflex._language import translated
 from rockflex._shown import shortened
 from rockflex._units import UnitSystem
 from rockflex.report.run import _report_tables
-from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
+from rockflex.report.run._report_tables import (
+    DAGGER,
+    STATUS,
+    ReportCell,
+    ReportTable,
+    title_of_several_text,
+    value_cell,
+)
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
-from rockflex.response import DEMANDS, CheckLimits, RecordSet, check
+from rockflex.response import DEMANDS, DEMANDS_BY_RECORD, CheckLimits, RecordSet, check
 from rockflex.structure import structure_warnings
 
-_OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
-               "min_vertical_reaction")  # fmt: skip
-_COLUMNS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
+STATISTIC_HEADS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,7 +37,7 @@ class SetPage(ReportPage):
     lines: Sequence[tuple[str, str]]
     model: str
     records: ReportTable
-    fell: bool
+    fell: str
     statistics: ReportTable
     reasons: Sequence[str]
     limits: ReportTable
@@ -40,14 +46,13 @@ class SetPage(ReportPage):
     @property
     def sections(self) -> list[tuple[str, Sequence[Block]]]:
         """The contents with their headings, one below the other as in a document."""
-        ground = [("Base and ground", [self.lines])] if self.lines else []
-        fell = [f"{DAGGER} The values of a record that overturns include its fall."] * self.fell
+        ground = [(translated("Base and ground"), [self.lines])] if self.lines else []
         return [
-            (f"Structure: {self.kind}", [self.facts, self.modes]),
+            (translated("Structure: {kind}", kind=self.kind), [self.facts, self.modes]),
             *ground,
-            (f"Records: {self.model}", [self.records, *fell, Drawing("peaks")]),
-            ("Values for design", [self.statistics, *(f"For design: {reason}." for reason in self.reasons)]),
-            ("Checks", [self.limits, self.missing]),
+            (translated("Records: {model}", model=self.model), [self.records, self.fell or None, Drawing("peaks")]),
+            (translated("Values for design"), [self.statistics, *self.reasons]),
+            (translated("Checks"), [self.limits, self.missing]),
         ]
 
 
@@ -65,31 +70,36 @@ def set_page(
     first = checked_reported_runs(found.responses[0], structure, None, units)
     known = found.properties if structure is None else structure
     kind, n = _report_tables.structure_kind_text(known), len(found.responses)
+    records = translated("{n} record" if n == 1 else "{n} records", n=n)
     checks, elements = check(found, limits), _report_tables.elements_text(found.properties, units)
     page = SetPage(
-        title=shortened(texts.title or f"{kind} under {n} records", MAX_LETTERS["title"]),
+        title=shortened(texts.title or title_of_several_text(kind, n), MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
         facts=_report_tables.structure_facts(found.properties, units),
         modes=_report_tables.mode_table(found.properties, units),
-        lines=[*_report_tables.assumption_lines(first), *([("Elements", elements)] if elements else [])],
-        model=f"{found.responses[0].model}, {n} records",
+        lines=[*_report_tables.assumption_lines(first), *([(translated("Elements"), elements)] if elements else [])],
+        model=f"{found.responses[0].model}, {records}",
         records=_record_table(found, units),
-        fell=found.n_overturned > 0,
+        fell=translated("† The values of a record that overturns include its fall.") if found.n_overturned else "",
         statistics=_statistics_table(found, units),
-        reasons=list(dict.fromkeys(found.statistics["reason"])),
-        limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks], units),
+        reasons=[
+            translated("For design: {reason}.", reason=each) for each in dict.fromkeys(found.statistics["reason"])
+        ],
+        limits=limit_check_table(
+            [translated("demand" if found.rule is None else "demand for design")], [checks], units
+        ),
         missing=missing_checks_text(checks),
         warnings=[*structure_warnings(known), *found.warnings],
     )
-    return page, {"peaks": ("Peaks of each record, and their statistics", plot_set(found))}
+    return page, {"peaks": (translated("Peaks of each record, and their statistics"), plot_set(found))}
 
 
 def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
-    shown = {name: DEMANDS[name].unit_in(units) for name in _OF_RECORDS if name in found.statistics.index}
+    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in found.statistics.index}
     pga = units.of("acceleration", "m/s²")
-    heads = [("record", ""), ("", ""), ("PGA", pga.name), ("factor", "")]
-    heads += [(DEMANDS[name].symbol, unit.name) for name, unit in shown.items()]
+    heads = [(translated("record"), ""), ("", ""), ("PGA", pga.name), (translated("factor"), "")]
+    heads += [(translated(DEMANDS[name].symbol), unit.name) for name, unit in shown.items()]
     rows: list[list[ReportCell]] = []
     for motion, (_, row) in zip(found.motions, found.peaks.iterrows(), strict=True):
         fell = row["status"] == "overturned"
@@ -97,7 +107,7 @@ def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
         rows.append(
             [
                 ReportCell(motion.name),
-                ReportCell(STATUS[row["status"]] + (f" {DAGGER}" if fell else ""), None, "status", fell),
+                ReportCell(translated(STATUS[row["status"]]) + (f" {DAGGER}" if fell else ""), None, "status", fell),
                 value_cell(motion.pga, "pga", pga.size),
                 value_cell(scale, "scale"),
                 *(value_cell(float(row[name]), name, unit.size) for name, unit in shown.items()),
@@ -107,12 +117,13 @@ def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
 
 
 def _statistics_table(found: RecordSet, units: UnitSystem) -> ReportTable:
-    heads = [("demand", ""), ("unit", ""), *((words, "") for words in _COLUMNS.values())]
+    heads = [(translated("demand"), ""), (translated("unit"), "")]
+    heads += [(translated(words), "") for words in STATISTIC_HEADS.values()]
     rows = [
         [
-            ReportCell(DEMANDS[str(name)].symbol),
+            ReportCell(translated(DEMANDS[str(name)].symbol)),
             ReportCell(unit),
-            *(value_cell(float(row[each]), each, size) for each in _COLUMNS),
+            *(value_cell(float(row[each]), each, size) for each in STATISTIC_HEADS),
         ]
         for name, row in found.statistics.iterrows()
         for size, unit in (DEMANDS[str(name)].unit_in(units),)

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 from rockflex._errors import InputError
-from rockflex._shown import number_with_noun, shortened, shown
+from rockflex._language import chosen_language, translated
+from rockflex._shown import shortened, shown
 from rockflex._versions import package_versions
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run._report_tables import ReportFact, ReportTable
@@ -55,11 +56,12 @@ def checked_report_texts(title: Any, date: Any, notes: Any, project: Any, author
     """Check the texts of a report."""
     if not isinstance(title, str | None):
         raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
-    named = {"project": ("Project", project), "author": ("Author", author), "checker": ("Checked by", checker)}
-    for name, (_, text) in named.items():
+    named = {"project": project, "author": author, "checker": checker}
+    for name, text in named.items():
         if not isinstance(text, str):
             raise InputError(f"{name} must be a text, but {shown(text)} was given.", field=name)
-    heads = [(name, shortened(text, MAX_LETTERS["name"])) for name, text in named.values() if text]
+    heads = [(translated("Project"), project), (translated("Author"), author), (translated("Checked by"), checker)]
+    heads = [(name, shortened(text, MAX_LETTERS["name"])) for name, text in heads if text]
     return ReportTexts(title, _checked_report_date(date), heads, author, _joined_notes(_checked_report_notes(notes)))
 
 
@@ -157,9 +159,12 @@ def line_count_of_table(table: ReportTable | None) -> int:
 def first_warnings(texts: Sequence[str]) -> list[str]:
     """Return the warnings that a sheet has room for, and how many more there are."""
     rest = len(texts) - MAX_WARNINGS
+    more = translated(
+        "and {n} more warning; see the responses" if rest == 1 else "and {n} more warnings; see the responses", n=rest
+    )
     return [
         *(shortened(text, MAX_LETTERS["warning"]) for text in texts[:MAX_WARNINGS]),
-        *([f"and {number_with_noun(rest, 'more warning')}; see the responses"] if rest > 0 else []),
+        *([more] if rest > 0 else []),
     ]
 
 
@@ -175,7 +180,9 @@ def page_as_html(page: ReportPage, figures: Figures) -> str:
     }
     templates = jinja_templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
-    return templates.get_template(page.template).render(page=page, max_letters=MAX_LETTERS, drawings=drawings)
+    templates.globals["t"] = translated
+    given = {"language": chosen_language()[0], "max_letters": MAX_LETTERS, "drawings": drawings}
+    return templates.get_template(page.template).render(page=page, **given)
 
 
 def _symbols_as_html(text: str) -> str:

@@ -15,9 +15,10 @@ from rockflex.fragility import check_limit_columns
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
-from rockflex.study._plan import ChunkedPlan, run_plan
+from rockflex.study._plan import PER_CHUNK, ChunkedPlan
 from rockflex.study._result_tables import Columns, Table
-from rockflex.study._run_matrix import Run, StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_matrix import Demands, Run, StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_plan import run_plan
 from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, facts_of_design, total_dissipator_force
 from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
@@ -290,6 +291,8 @@ def search_design(
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
+    demands: Demands | None = None,
+    dask: str | None = None,
 ) -> "pd.DataFrame":
     """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
 
@@ -300,8 +303,8 @@ def search_design(
     ----------
     structure
         A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
-    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground
-        As in `run_cloud`.
+    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, demands, dask
+        As in `run_cloud`; a `DesignStudy` with a `search` stores its runs.
     search
         The values of the variables, and the number of refinements.
     requirements
@@ -342,8 +345,10 @@ def search_design(
     """
     given: Any = scales
     matrix = study_matrix(
-        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
-    )
+        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
+        demands=demands,
+    )  # fmt: skip
     wanted = checked_requirements(requirements)
     space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
-    return run_plan(DesignSearchPlan(matrix, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)
+    plan = DesignSearchPlan(matrix, space, wanted, unit_costs, given, PER_CHUNK)
+    return run_plan(plan, workers, progress, dask=dask)

@@ -17,9 +17,10 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
-from rockflex.study._plan import run_plan
+from rockflex.study._plan import PER_CHUNK
 from rockflex.study._result_tables import Columns, Row, Table
-from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_matrix import Demands, StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._run_plan import run_plan
 from rockflex.study.cloud import CloudPlan, Factors
 from rockflex.study.design._design_search import DesignSearchPlan
 from rockflex.study.design._design_table import design_table
@@ -325,6 +326,8 @@ def run_design(
     work_limit: float | None = WORK_LIMIT,
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
+    demands: Demands | None = None,
+    dask: str | None = None,
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
@@ -341,8 +344,8 @@ def run_design(
         B in m, positive.
     tendons
         Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
-    models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, progress
-        As in `run_cloud`.
+    models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, progress, demands, dask
+        As in `run_cloud`; a `DesignStudy` stores its runs.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
         metre below it. Default: 0, a constant base mass.
@@ -379,7 +382,9 @@ def run_design(
             f"tendons must be a sequence of TendonLevel objects, but {type_description(tendons)} was given."
         )
     matrix = study_matrix(
-        [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
-    )
+        [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
+        demands=demands,
+    )  # fmt: skip
     designs = designs_of_structure(matrix.structures[0], half_widths, list(tendons), base_mass_per_width)
-    return run_plan(DesignPlan(matrix, designs, given, per_chunk=64), workers, progress)
+    plan = DesignPlan(matrix, designs, given, PER_CHUNK)
+    return run_plan(plan, workers, progress, dask=dask)

@@ -1,6 +1,6 @@
 // Requests to the server. A refusal has messages by the path of the field at fault.
 
-import { language, t } from "./texts.js";
+import { t } from "./texts.js";
 
 export class Refusal extends Error {
   constructor(errors, status) {
@@ -26,10 +26,10 @@ async function checked(response) {
   throw new Refusal(errors ?? { "": t("The server responded with status {status}.", { status: response.status }) }, response.status);
 }
 
-async function request(path, { headers, ...options } = {}) {
+async function request(path, options) {
   let response;
   try {
-    response = await fetch(path, { ...options, headers: { ...headers, "Accept-Language": language } });
+    response = await fetch(path, options);
   } catch (error) {
     if (error.name === "AbortError") throw new Refusal({}, 0); // replaced by a later request
     throw new Refusal({ "": t("The server does not respond. Is rockflex serve still running?") }, 0);

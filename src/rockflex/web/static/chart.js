@@ -196,7 +196,7 @@ export function overTime(charts) {
   const group = [];
   for (const options of charts) {
     const last = group.length === charts.length - 1;
-    const time = { xName: "t [s]", xLabel: last ? "time [s]" : "", noXText: !last };
+    const time = { xName: "t [s]", xLabel: last ? t("time [s]") : "", noXText: !last };
     group.push(new Chart({ ...time, group, symmetric: true, left: 80, ...options }));
   }
   return group;

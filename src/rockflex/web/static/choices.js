@@ -3,6 +3,7 @@
 import { clone, h } from "./dom.js";
 import { trouble } from "./form.js";
 import { t } from "./texts.js";
+import { unitFor } from "./units.js";
 
 const MODELS = [
   ["MDOF-S", t("all modes, small rotations")],
@@ -93,8 +94,11 @@ const named = (about, name) => about.measures.find((each) => each.name === name)
 
 export const unitOf = (about, name) => named(about, name).unit;
 
-// Short name of a measure with its unit, for an axis.
-export const axisOf = (about, name) => named(about, name).axis;
+// Short name of a measure with the unit that is shown, for an axis.
+export function axisOf(about, name) {
+  const { axis, unit } = named(about, name);
+  return unit ? `${axis} [${unitFor(unit).name}]` : axis;
+}
 
 export const GIVEN = "given"; // the folder of the visitor among the suites
 export const CHOSEN = "chosen"; // and the records for the target spectrum
@@ -105,6 +109,6 @@ export function suitesOf({ about, state }, chosen = [], forTarget = false) {
   const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
   const own = [];
   if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, t("your folder")]);
-  if (!forTarget && (state.target.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, t("records for the target")]);
+  if (!forTarget && (state.target.shown || state.record_set.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, t("records for the target")]);
   return [...many, ...own];
 }

@@ -87,10 +87,10 @@ export const ink = (name) => `var(--${name})`;
 // The context of a canvas, made as large as it is shown.
 export function context(canvas, width, height) {
   const scale = document.documentElement.classList.contains("printing") ? PAPER : window.devicePixelRatio || 1;
-  canvas.width = Math.round(width * scale);
-  canvas.height = Math.round(height * scale);
-  canvas.style.height = `${height}px`;
   const g = canvas.getContext("2d");
+  const size = { width: Math.round(width * scale), height: Math.round(height * scale) };
+  if (canvas.width === size.width && canvas.height === size.height) g.reset(); // another size takes new memory
+  else Object.assign(canvas, size).style.height = `${height}px`;
   g.setTransform(scale, 0, 0, scale, 0, 0);
   return g;
 }

@@ -6,19 +6,18 @@ import { clone, decode, h, latest, number } from "./dom.js";
 import { box, select, slider } from "./form.js";
 import { Player } from "./stage.js";
 import { t } from "./texts.js";
+import { eachNumber, inUnit } from "./units.js";
 
 const CURVES = ["t", "rotation", "points", "uplifted", "slip", "heave", "left_edge", "right_edge"];
 const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height" };
 const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", "stiffness", "column_stiffness", "beam_stiffness"];
 const LEAD = 3; // s before the largest rotation at which the drawing begins to move
 const FAR_FIELD = "fema-p695-far-field";
+const SELDOM = 200; // ms between two values of a text field during a drag: browsers inspect the form after each
 const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
 const tidy = (value) => Number(value.toPrecision(3));
 const clamp = (value, [low, high]) => Math.min(high, Math.max(low, value));
-const times = (value, factor) => {
-  if (Array.isArray(value)) return value.map((each) => times(each, factor));
-  return typeof value === "number" ? Number((value * factor).toPrecision(6)) : value; // "inf" stays
-};
+const times = (value, factor) => eachNumber(value, (each) => Number((each * factor).toPrecision(6)));
 
 export const kindOf = (structure, kinds) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
 
@@ -92,6 +91,7 @@ export function drawing(app, settle) {
   const dots = new Map(); // by the name of their handle
   let view = null;
   let wanted = {}; // width and height that no answer shows yet
+  let told = 0; // when the fields were last given their values
   let held = null; // the handle that is dragged, as it was before
 
   function act(handle, value, live) {
@@ -154,11 +154,11 @@ export function drawing(app, settle) {
       }
       const element = dots.get(name);
       const [x, y] = stage.spot(...at);
-      element.style.left = `${x}px`;
-      element.style.top = `${y + down}px`;
-      element.title = `${label}: ${number(value, 3)} m`;
+      element.style.transform = `translate(${x}px, ${y + down}px)`; // without a new layout
+      const length = inUnit(value, "length", 3);
+      element.title = `${label}: ${length}`;
       const said = {
-        label, valuenow: tidy(value), valuemin: tidy(range[0]), valuemax: tidy(range[1]), valuetext: `${number(value, 3)} metres`,
+        label, valuenow: tidy(value), valuemin: tidy(range[0]), valuemax: tidy(range[1]), valuetext: length,
         orientation: up ? "vertical" : "horizontal",
       };
       for (const [key, text] of Object.entries(said)) element.setAttribute(`aria-${key}`, text);
@@ -184,7 +184,11 @@ export function drawing(app, settle) {
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
     player.set(view);
     figures.replaceChildren(...three(m, run));
-    quick.refresh();
+    const now = performance.now();
+    if (!stage.held || now - told > SELDOM) {
+      told = now;
+      quick.refresh();
+    }
     if (!first) return;
     const peak = m.peaks.time_of_max_rotation ?? 0;
     player.move(calm.matches ? peak : peak - LEAD);
@@ -201,12 +205,15 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
   const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
-  const share = fixed ? `${number((100 * peaks.max_base_moment) / fixed, 3)} %` : `${number(peaks.max_base_moment / 1000, 3)} kN m`;
+  const share = fixed ? inUnit(peaks.max_base_moment / fixed, "share", 3) : inUnit(peaks.max_base_moment, "moment", 3);
   return [
-    one("rotation", "Largest rotation", fell ? "overturns" : `${number(1000 * peaks.max_rotation, 3)} mrad`,
-      fell ? `it falls, and lies at ${number(peaks.end_time, 3)} s` : "of the base while it stands on one edge", peaks.max_rotation),
-    one("top", "Top displacement", fell ? "–" : `${number(top, 3)} m`, stiff ? `${number(stiff, 3)} m if its base were held down` : "relative to the ground", top),
-    one("moment", "Base moment", share, fixed ? "of that if its base were held down" : "at the level of the base", fixed ? peaks.max_base_moment / fixed : null),
+    one("rotation", t("Largest rotation"), fell ? t("overturns") : inUnit(peaks.max_rotation, "rotation", 3),
+      fell ? t("it falls, and lies at {time}", { time: inUnit(peaks.end_time, "time", 3) }) : t("of the base while it stands on one edge"),
+      peaks.max_rotation),
+    one("top", t("Top displacement"), fell ? "–" : inUnit(top, "length", 3),
+      stiff ? t("{top} if its base were held down", { top: inUnit(stiff, "length", 3) }) : t("relative to the ground"), top),
+    one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
+      fixed ? peaks.max_base_moment / fixed : null),
   ];
 }
 
@@ -218,7 +225,7 @@ function few(app, shown, settle) {
     if (!found || !(value > 0)) return;
     app.change({ structure: found.set(value) }, true);
     settle();
-  }, { unit, hint });
+  }, { unit, hint, digits: 4 });
   const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
   const record = select("few.record", t("Earthquake record"), [], "", (value) => {
     const [suite, name] = value.split("|");
@@ -246,7 +253,7 @@ function few(app, shown, settle) {
     const found = view ? measures(view.of, view, app.about.kinds) : {};
     for (const [name, each] of Object.entries(fields)) {
       each.hidden = !found[name];
-      if (found[name]) each.setValue(tidy(found[name].value));
+      if (found[name]) each.setValue(each.unit.size === 1 ? tidy(found[name].value) : found[name].value);
     }
     if (view) fields.H.querySelector(".hint").textContent = t("slenderness: {ratio} times B", { ratio: number(view.heights.at(-1) / view.half_width, 3) });
   }

@@ -2,22 +2,32 @@
 
 import { h, number, symbol } from "./dom.js";
 import { t } from "./texts.js";
+import { fromSI, toSI, unitFor } from "./units.js";
 
 let serial = 0;
 
 // The range of a number, in words.
 export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
 
-// A field around any control; the server's messages about `path` appear in it.
+// A field around any control; the server's messages about `path` appear in it. `unit` is that of SI: `element.unit` is shown.
 export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
   const id = control.id || `f${++serial}`;
   control.id = id;
   control.setAttribute("aria-describedby", hint ? `${id}-hint ${id}-error` : `${id}-error`);
-  return h("div", { class: "field", "data-path": path },
+  const sign = h("span", { class: "unit" });
+  const element = h("div", { class: "field", "data-path": path },
     h("label", { for: id, title: help }, label),
-    h("div", { class: "row" }, control, unit ? h("span", { class: "unit" }, unit) : null),
+    h("div", { class: "row" }, control, sign),
     hint ? h("div", { class: "hint", id: `${id}-hint` }, symbol(hint)) : null,
     trouble(`${id}-error`));
+  element.setUnit = (si) => {
+    element.unit = unitFor(si);
+    element.dataset.si = element.unit.size === 1 ? "" : si;
+    sign.textContent = element.unit.name;
+    sign.hidden = !si;
+  };
+  element.setUnit(unit);
+  return element;
 }
 
 // Space for the server's messages about the enclosing element.
@@ -43,7 +53,9 @@ export function showErrors(root, errors) {
     }
     for (let folded = element.closest("details"); folded; folded = folded.parentElement.closest("details")) folded.open = true;
     const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
-    element.querySelector(":scope > .error").textContent = sentence;
+    const { si } = element.dataset;
+    element.querySelector(":scope > .error").textContent = si && /\d/.test(text)
+      ? t("In SI units ({unit}): {message}", { unit: si, message: text }) : sentence;
     // A message about a whole group does not concern its single fields.
     if (element.classList.contains("field"))
       for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
@@ -140,6 +152,7 @@ function plain(value) {
 // One field of a table that the server describes; `change(value)` is called with undefined where it was left empty.
 export function tableField(path, spec, value, change) {
   const shown = value ?? spec.default;
+  const unit = unitFor(spec.unit ?? "");
   let control;
   if (spec.type === "choice") {
     control = h("select", { onchange: () => change(control.value) },
@@ -151,14 +164,17 @@ export function tableField(path, spec, value, change) {
     const many = spec.type === "matrix";
     control = h(many ? "textarea" : "input", {
       type: many ? null : "text", inputmode: many ? null : "text", spellcheck: "false", autocomplete: "off",
-      value: write(shown), onchange: () => change(understood(control, read(spec.type, control.value))),
+      onchange: () => change(toSI(understood(control, read(spec.type, control.value)), unit)),
     });
+    control.value = write(fromSI(shown, unit));
   }
-  const limits = spec.low === null ? "" : between(spec.low, spec.high, spec.unit);
+  const limits = spec.low === null ? "" : between(...fromSI([spec.low, spec.high], unit), unit.name);
   const typed = spec.type !== "flag" && spec.type !== "choice";
   const optional = typed && !spec.required ? t("optional") : "";
   const hint = [t(spec.help).replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
-  return field(path, t(spec.label), control, { unit: spec.unit, hint });
+  const element = field(path, t(spec.label), control, { unit: spec.unit, hint });
+  element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, unit)));
+  return element;
 }
 
 // An optional table within a table; `change` gets the whole table, or undefined once it is removed.
@@ -187,13 +203,14 @@ export function tableGroup(path, spec, value, start, change) {
 }
 
 // A box for one or several numbers.
-export function box(path, label, value, change, { many = false, ...extra } = {}) {
+export function box(path, label, value, change, { many = false, digits, ...extra } = {}) {
   const control = h("input", {
-    type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off", value: write(value),
-    onchange: () => change(understood(control, many ? list(control.value) : parseNumber(control.value))),
+    type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off",
+    onchange: () => change(toSI(understood(control, many ? list(control.value) : parseNumber(control.value)), element.unit)),
   });
   const element = field(path, label, control, extra);
-  element.setValue = (v) => document.activeElement !== control && (control.value = write(v));
+  element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, element.unit, digits)));
+  element.setValue(value);
   return element;
 }
 
@@ -241,26 +258,29 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   const range = h("input", {
     type: "range", min: to(low), max: to(high), step: log ? 0.005 : step, "aria-label": label,
     oninput: () => {
-      entry.value = from(range.value);
-      change(Number(entry.value), true);
+      entry.value = fromSI(from(range.value), element.unit, 3);
+      say();
+      change(toSI(Number(entry.value), element.unit), true);
     },
-    onchange: () => change(Number(entry.value), false),
+    onchange: () => change(toSI(Number(entry.value), element.unit), false),
   });
   const entry = h("input", {
-    type: "text", class: "short", inputmode: "decimal", autocomplete: "off", value,
+    type: "text", class: "short", inputmode: "decimal", autocomplete: "off",
     onchange: () => {
-      const given = understood(entry, parseNumber(entry.value));
+      const given = toSI(understood(entry, parseNumber(entry.value)), element.unit);
       range.value = to(Number(given));
       change(given);
     },
   });
-  range.value = to(value);
   const element = field(path, label, entry, { unit, hint: hint || between(low, high, unit) });
   element.querySelector(".row").prepend(range);
+  const say = () => range.setAttribute("aria-valuetext", `${entry.value} ${element.unit.name}`.trim());
   element.setValue = (v) => {
-    if (document.activeElement !== entry) entry.value = v;
+    if (document.activeElement !== entry) entry.value = fromSI(v, element.unit);
     if (document.activeElement !== range) range.value = to(v);
+    say();
   };
+  element.setValue(value);
   return element;
 }
 

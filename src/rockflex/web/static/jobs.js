@@ -60,16 +60,18 @@ export class Remarks {
 
 const goes = (answer) => ["waiting", "running"].includes(answer.status);
 
+const kept = {}; // what a study goes on with, by its kind
+
 export class Study {
   // `key` identifies everything that determines the runs; `show` draws an answer into `results`; `example` returns the
   // choices of a quick look, so that the tab begins with something to see; `words` are those of the button and the status.
   constructor(app, kind, { words, key, show, results, example }) {
     Object.assign(this, { app, kind, words, key, show, results, example });
-    this.token = null;
-    this.looked = null; // the choices of the quick look, while it is what is shown
     this.answer = null;
-    this.ran = ""; // the key of the present or last run
     this.watching = false;
+    // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
+    Object.assign(this, kept[kind] ?? { token: null, looked: null, ran: "" });
+    delete kept[kind];
     this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, words.run);
     this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, t("Cancel"));
     this.bar = h("progress", { max: 1, value: 0, "aria-label": t("Progress") });
@@ -79,6 +81,7 @@ export class Study {
       h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
       this.foot);
     this.load = latest(() => this.#load());
+    if (this.token) this.#watch();
   }
 
   // Update the tab after a change of the state.
@@ -89,8 +92,9 @@ export class Study {
     if (this.answer) this.load();
   }
 
-  // The page was reopened from a link.
-  close() {
+  // The page was reopened from a link; or the tab is made anew, and goes on with its `runs`.
+  close(runs) {
+    if (runs && this.token) kept[this.kind] = { token: this.token, looked: this.looked, ran: this.ran };
     this.token = this.answer = null;
   }
 
@@ -98,10 +102,11 @@ export class Study {
   downloads(root, ofRuns, others) {
     const own = [`${this.kind}-records`, t("Records (ZIP)")]; // those that the program has not
     const names = ofRuns.map(([what]) => what);
-    const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
-    const buttons = this.app.downloads(root, [...ofRuns, ...others, own], path);
-    this.ownRecords = [...buttons.children].find((each) => each.dataset.file === own[0]);
-    this.needRuns = [...buttons.children].filter((each) => names.includes(each.dataset.file));
+    const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/file/${what}`);
+    const buttons = downloads(this.app, root, [...ofRuns, ...others, own], path);
+    const all = [...buttons.querySelectorAll("[data-file]")];
+    this.ownRecords = all.find((each) => each.dataset.file === own[0]);
+    this.needRuns = all.filter((each) => names.includes(each.dataset.file));
     for (const button of this.needRuns) button.disabled = true;
     return buttons;
   }
@@ -171,7 +176,7 @@ export class Study {
     this.run.textContent = on && !this.looked ? this.words.again : this.words.run;
     this.cancel.disabled = !on;
     this.bar.value = answer.done / answer.total;
-    for (const button of this.needRuns) button.disabled = !answer.done || Boolean(this.looked);
+    for (const button of this.needRuns) button.disabled = !(answer.ready ?? answer.done) || Boolean(this.looked);
     this.status.textContent = [
       this.looked ? t("A quick look, with fewer runs.") : "", STUDY_STATUS[answer.status](answer), old ? this.words.changed : "",
     ].filter(Boolean).join(" ");
@@ -180,7 +185,7 @@ export class Study {
   }
 }
 
-const POLL = 400; // ms
+const PATIENCE = 400; // ms before the page shows that it waits, and the longest time between two looks
 const FILE_STATUS = {
   waiting: () => t("Waiting for other users' files."),
   running: ({ done, total }) => (total ? t("{done} of {total} frames", { done, total }) : t("Computing …")),
@@ -189,39 +194,47 @@ const FILE_STATUS = {
   failed: () => "",
 };
 
-// The button, and the element that shows the progress; messages appear next to the fields of `root`.
-export function making(app, root, what, label) {
-  let token = null;
-  const button = h("button", { type: "button", "data-file": what, onclick: make }, label);
-  const cancel = h("button", { type: "button", onclick: () => attempt(() => drop(`/api/file/${token}`), refused) }, t("Cancel"));
-  const bar = h("progress", { max: 1, value: 0, "aria-label": t("Progress of {file}", { file: label }) });
+// Buttons for files, which the server makes in the background: what takes long has its progress below them, and can be
+// cancelled. Messages appear next to the fields of `root`.
+export function downloads(app, root, files, path = (what) => `/api/file/${what}`) {
+  const going = h("div");
   const status = h("p", { class: "help", role: "status" });
-  const going = h("div", { class: "making", hidden: true }, bar, cancel);
   const refused = (error) => app.complain(root, error.errors);
 
-  async function make() {
+  async function make(what, label, button) {
     if (button.ariaBusy === "true") return;
+    let stopped = false;
+    const bar = h("progress", { max: 1, "aria-label": t("Progress of {file}", { file: label }) });
+    const cancel = h("button", { type: "button", onclick: () => (stopped = true) }, t("Cancel"));
+    const row = h("div", { class: "making", hidden: true }, bar, cancel);
+    const patience = setTimeout(() => (row.hidden = false), PATIENCE);
+    const say = (answer) => (status.textContent = FILE_STATUS[answer.status](answer));
     button.ariaBusy = "true";
-    bar.value = 0;
     status.textContent = "";
-    await attempt(follow, refused);
-    going.hidden = true;
+    going.append(row);
+    await attempt(async () => {
+      const { token } = await ask(path(what), { state: app.state });
+      app.complain(root, {});
+      for (let wait = PATIENCE / 8; ; wait = Math.min(2 * wait, PATIENCE)) {
+        if (stopped) await drop(`/api/file/${token}`);
+        const answer = stopped ? { status: "cancelled" } : await get(`/api/file/${token}`);
+        if (answer.total) bar.value = answer.done / answer.total;
+        if (!row.hidden || !goes(answer)) say(answer);
+        if (answer.status === "failed") app.complain(root, answer.errors);
+        if (answer.status === "done") save(...(await file(`/api/file/${token}/content`)));
+        if (!goes(answer)) return;
+        await new Promise((resolve) => setTimeout(resolve, wait));
+      }
+    }, refused);
+    clearTimeout(patience);
+    row.remove();
     button.ariaBusy = "false";
   }
 
-  async function follow() {
-    ({ token } = await ask(`/api/file/${what}`, { state: app.state }));
-    app.complain(root, {});
-    going.hidden = false;
-    for (;;) {
-      const answer = await get(`/api/file/${token}`);
-      bar.value = answer.total ? answer.done / answer.total : 0;
-      status.textContent = FILE_STATUS[answer.status](answer);
-      if (answer.status === "failed") app.complain(root, answer.errors);
-      if (answer.status === "done") return save(...(await file(`/api/file/${token}/content`)));
-      if (!["waiting", "running"].includes(answer.status)) return null;
-      await new Promise((resolve) => setTimeout(resolve, POLL));
-    }
-  }
-  return { button, element: h("div", { id: `making-${what}` }, going, status) };
+  const button = ([what, label]) => {
+    const one = h("button", { type: "button", "data-file": what, onclick: () => make(what, label, one) }, label);
+    return one;
+  };
+  return h("div", { class: "downloads" },
+    h("div", { class: "buttons" }, h("span", { class: "help" }, t("Download:")), files.map(button)), going, status);
 }

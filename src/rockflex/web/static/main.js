@@ -1,9 +1,10 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
-import { ask, attempt, file, get, Refusal } from "./api.js";
-import { clone, h, number, printing, save } from "./dom.js";
+import { ask, attempt, get, Refusal } from "./api.js";
+import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
-import { t } from "./texts.js";
+import { language, t } from "./texts.js";
+import { setUnits } from "./units.js";
 
 const TABS = [
   ["structure", t("Structure"),
@@ -18,8 +19,7 @@ const TABS = [
     t("Find how wide the base must be to meet a target probability, with and without a tendon.")],
 ];
 
-const LIVE = 300; // ms between two changes of the address
-const SLOW = 400; // ms after which a button says that it works
+const LIVE = 300; // ms after the last move, until the address changes
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
@@ -29,12 +29,12 @@ let early = null; // the tab chosen before the state was known
 export const app = {
   about: null,
   state: null,
-  uploads: {},
   // Change part of the state and update the page; `live` while a handle or slider still moves: browsers take few changes of
   // the address.
   change(patch, live = false) {
     merge(app.state, patch);
-    if (live) later ??= setTimeout(keep, LIVE);
+    clearTimeout(later);
+    if (live) later = setTimeout(keep, LIVE);
     else keep();
     refresh(live);
   },
@@ -53,25 +53,19 @@ export const app = {
     const foot = root.querySelector(".foot");
     if (foot) foot.textContent = left.map(elsewhere).join(" ");
   },
-  download(path, root) {
-    return attempt(async () => save(...(await file(path, { state: app.state }))), (error) => app.complain(root, error.errors));
-  },
-  // Buttons that fetch files.
-  downloads(root, files, path = (what) => `/api/download/${what}`) {
-    const button = ([what, label]) => {
-      const run = () => once(one, () => app.download(path(what), root));
-      const one = h("button", { type: "button", "data-file": what, onclick: run }, label);
-      return one;
-    };
-    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, t("Download:")), files.map(button));
-  },
-  // A button to another tab, below the results.
-  next(tab, text) {
+  // A button to another tab, below the results; `patch` changes the state before.
+  next(tab, text, patch = {}, label = titleOf(tab)) {
     const go = () => {
+      merge(app.state, patch);
       app.go(tab);
       tabOf(tab).focus();
     };
-    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, titleOf(tab)));
+    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, label));
+  },
+  // Open another state of the page, as a link does.
+  restore(state) {
+    location.hash = `#s=${encode(state)}`;
+    document.getElementById("main").focus();
   },
   go(tab) {
     if (!app.state) {
@@ -84,30 +78,16 @@ export const app = {
   },
 };
 
-// Do the work of a button once at a time; the button says so where it takes long.
-async function once(button, work) {
-  if (button.ariaBusy === "true") return;
-  const label = button.textContent;
-  button.ariaBusy = "true";
-  const slow = setTimeout(() => (button.textContent = `${label} …`), SLOW);
-  try {
-    await work();
-  } finally {
-    clearTimeout(slow);
-    button.ariaBusy = "false";
-    button.textContent = label;
-  }
-}
-
 const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  if (found) return t("Structure, {field}: {text}", { field: found[2].replaceAll("_", " "), text: found[3] });
-  const [, of] = /^record(?:\.\w+)*: (.*)$/s.exec(text) ?? [];
-  return of === undefined ? text : t("Earthquake: {text}", { text: of });
+  if (!found) return text.replace(/^record(?:\.\w+)*: (.*)$/s, (_, message) => t("Earthquake: {message}", { message }));
+  const values = { field: found[2].replaceAll("_", " "), message: found[3] };
+  const plain = app.state.units === "SI" || !/\d/.test(found[3]);
+  return plain ? t("Structure, {field}: {message}", values) : t("Structure, {field} (in SI units): {message}", values);
 }
 
 // Tables are merged key by key; a structure is replaced, and undefined removes a key.
@@ -137,7 +117,7 @@ function decoded(hash) {
 // What a printed sheet says of its tab; Swedish dates are those of ISO 8601.
 function heading() {
   if (!app.state) return "rockflex";
-  const { structure, record, scale, tab, target } = app.state;
+  const { structure, record, record_set, scale, tab, target } = app.state;
   const motion = {
     suite: record.name, pulse: t("a pulse"), upload: t("an uploaded record"), folder: record.given || t("records of a folder"),
   }[record.source];
@@ -145,7 +125,8 @@ function heading() {
   const of = { structure: structure.name || t("Structure"), motion: `${motion}${times}` };
   const one = t("{structure} under {motion}", of);
   const earthquake = target.shown ? t("{structure} under records for a target spectrum", of) : one;
-  const about = { structure: of.structure, earthquake, response: one }[tab] ?? t("{structure} under many records", of);
+  const response = record_set.shown ? t("{structure} under a set of records", of) : one;
+  const about = { structure: of.structure, earthquake, response }[tab] ?? t("{structure} under many records", of);
   return `${about} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
 
@@ -170,15 +151,25 @@ async function open() {
       banner.hidden = false;
     }
   }
-  app.state = state;
+  app.state = Object.assign(state, { language });
   if (early) state.tab = early;
   early = null;
-  for (const [name, each] of Object.entries(made)) {
-    each.close?.();
+  document.getElementById("units").value = state.units;
+  await renew(false);
+}
+
+// Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
+async function renew(runs) {
+  setUnits(app.about.units, app.state.units);
+  const before = Object.entries(made);
+  for (const [name, each] of before) {
+    each.leave?.();
+    each.close?.(runs);
     delete made[name];
   }
   keep();
   await show();
+  for (const [name, { close }] of before) if (runs && close) made[name] ??= (await import(`./tabs/${name}.js`)).default(app);
 }
 
 function reason(error) {
@@ -252,6 +243,14 @@ function themes() {
   });
 }
 
+function unitsChoice() {
+  const choose = h("select", { id: "units", "aria-label": t("Units"), title: t("Units of the values shown and typed"), onchange: () => {
+    app.state.units = choose.value;
+    renew(true);
+  } }, Object.keys(app.about.units).map((name) => h("option", {}, name)));
+  document.querySelector(".tools").prepend(choose);
+}
+
 function copying() {
   const button = document.getElementById("copy");
   button.title = t("Copy a link to the page in its present state");
@@ -273,6 +272,7 @@ copying();
 printing(heading);
 try {
   app.about = await get("/api/about");
+  unitsChoice();
   await open();
   addEventListener("hashchange", () => {
     if (location.hash !== written) open();

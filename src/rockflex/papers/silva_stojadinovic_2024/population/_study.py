@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 import numpy as np
@@ -308,6 +309,8 @@ def run_population(
     workers: SupportsIndex | None = None,
     work_limit: float | None = study.WORK_LIMIT,
     progress: ProgressChoice = None,
+    folder: str | Path | None = None,
+    dask: str | None = None,
 ) -> "pd.DataFrame":
     """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
 
@@ -327,6 +330,8 @@ def run_population(
         As in `run_cloud`.
     progress
         As in `run_cloud`, counted in pairs.
+    folder, dask
+        As in `run_study`; the folder is that of the `PopulationStudy` of these arguments.
 
     Returns
     -------
@@ -358,4 +363,8 @@ def run_population(
     count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(study.checked_motions(motions))
     free, limit = study.free_vibration_time(free_vibration), study.checked_work_limit(work_limit)
-    return study.run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)
+    spec = PopulationStudy(
+        records=suite, pairs=count, seed=start, free_vibration="settle" if free is None else free,
+        work_limit="none" if limit is None else limit,
+    )  # fmt: skip
+    return study.run_plan(spec.plan(), workers, progress, dask=dask, folder=folder, study=lambda: spec)

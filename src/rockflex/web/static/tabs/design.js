@@ -6,13 +6,14 @@ import { h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
 import { t } from "../texts.js";
+import { inUnit, titled, unit, valueIn } from "../units.js";
 
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
-const WIDTH = "half width of the base B [m]";
 
-const numbers = (values) => values.map((value) => value ?? NaN);
+// Values in the unit of a kind of quantity, not a number where there are none.
+const numbers = (values, quantity = "ratio") => values.map((value) => (value ?? NaN) / unit(quantity).size);
 
 export default function designTab(app) {
   const choice = () => app.state.design;
@@ -35,11 +36,12 @@ export default function designTab(app) {
   const scales = entry("scales", t("Scale factors"), { many: true, hint: t("up to five, each from 0.01 to 20") });
   const model = list("model", t("Model"), []);
 
+  const width = { xLabel: titled(t("half width of the base B [{unit}]"), "length"), xName: titled("B [{unit}]", "length") };
   const chart = new Chart({
-    label: t("Probability over half width of the base"), yLabel: t("probability"), xLabel: WIDTH, height: 360, xName: "B [m]",
+    label: t("Probability over half width of the base"), yLabel: t("probability"), height: 360, ...width,
   });
   const moments = new Chart({
-    label: t("Median base moment over half width"), yLabel: "M_b [kN m]", xLabel: WIDTH, height: 190, zero: true, xName: "B [m]",
+    label: t("Median base moment over half width"), yLabel: titled("M_b [{unit}]", "moment"), height: 190, zero: true, ...width,
   });
   const keys = h("div");
   const verdict = h("div", { class: "answer", id: "width", role: "status" }, t("A quick look is computed first. Press Search to find how wide the base must be."));
@@ -72,31 +74,31 @@ export default function designTab(app) {
   function show(answer) {
     for (const each of [...answer.curves, ...answer.answers]) each.tendon = t(each.tendon);
     drawing.hidden = !answer.curves.length;
-    const curves = answer.curves.map((curve, i) => ({ ...curve, look: look(i) }));
+    const curves = answer.curves.map((curve, i) => ({ ...curve, x: numbers(curve.half_width, "length"), look: look(i) }));
     const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
       .filter((each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome));
     chart.set({
       yRange: [-0.02, 1.02],
       series: [
         ...curves.map(band).filter(Boolean),
-        ...curves.map((c) => ({ x: c.half_width, y: numbers(c.probability), label: c.tendon, ...c.look, width: 2 })),
+        ...curves.map((c) => ({ x: c.x, y: numbers(c.probability), label: c.tendon, ...c.look, width: 2 })),
         ...curves.map((c) => (
-          { kind: "points", x: c.half_width, y: numbers(c.probability), color: c.look.color, size: 3 })),
+          { kind: "points", x: c.x, y: numbers(c.probability), color: c.look.color, size: 3 })),
         ...met.map((each) => (
-          { kind: "points", x: [each.half_width], y: [choice().target], color: each.color, hollow: true, size: 7, width: 2 })),
+          { kind: "points", x: numbers([each.half_width], "length"), y: [choice().target], color: each.color, hollow: true, size: 7, width: 2 })),
       ],
       hlines: [{ y: choice().target, label: t("acceptable"), color: "muted" }],
       vlines: [
-        { x: answer.present, label: t("present base"), color: "muted", dash: [2, 3] },
-        ...met.map((each) => ({ x: each.half_width, label: `B = ${number(each.half_width, 3)} m`, color: each.color })),
+        { x: numbers([answer.present], "length")[0], label: t("present base"), color: "muted", dash: [2, 3] },
+        ...met.map((each) => ({ x: numbers([each.half_width], "length")[0], label: `B = ${inUnit(each.half_width, "length", 3)}`, color: each.color })),
       ],
     });
     moments.set({ series: curves.map((c) => (
-      { x: c.half_width, y: numbers(c.median_base_moment).map((v) => v / 1000), label: c.tendon, ...c.look })) });
+      { x: c.x, y: numbers(c.median_base_moment, "moment"), label: c.tendon, ...c.look })) });
     keys.replaceChildren(legend(curves.map((c) => ({ label: c.tendon, ...c.look }))));
     if (answer.answers.length)
       verdict.replaceChildren(...answer.answers.map((each) => sentence(each, answer.present)));
-    table.replaceChildren(designs(answer.curves));
+    table.replaceChildren(designs(curves));
     remarks.set([...new Set(answer.notes)].slice(0, 12));
   }
 
@@ -107,41 +109,44 @@ export default function designTab(app) {
     const offered = new Set([...MODELS, ...(app.state.bouc_wen ? YIELDING : []), choice().model]);
     model.setOptions([...offered].map((label) => [label, label]), choice().model);
     rotation.hidden = choice().limit !== "rotation";
-    at.querySelector(".unit").textContent = unitOf(app.about, choice().measure);
+    at.setUnit(unitOf(app.about, choice().measure));
+    at.setValue(choice().at);
     const held = (app.state.structure.elements ?? []).length > 0;
     own.hidden = !held;
     tendons.hidden = stiffness.hidden = held;
     study.refresh();
   }
-  return { element, refresh, close: () => study.close() };
+  return { element, refresh, close: (runs) => study.close(runs) };
 }
 
 // The result of a search for one tendon.
 function sentence(each, present) {
-  const half = `B = ${number(each.half_width, 3)} m`;
-  const width = `${number(2 * each.half_width, 3)} m`;
-  const now = `now ${number(2 * present, 3)} m`;
-  const sure = each.half_width_upper ? `; with 95 % confidence, ${number(2 * each.half_width_upper, 3)} m` : "";
+  const [half, width, now, upper] = [each.half_width, 2 * each.half_width, 2 * present, 2 * each.half_width_upper].map((value) => inUnit(value, "length", 3));
+  const values = { half, width, now, upper };
+  const enough = each.half_width_upper
+    ? t("a base {width} wide (B = {half}) is enough (now {now}; with 95 % confidence, {upper}).", values)
+    : t("a base {width} wide (B = {half}) is enough (now {now}).", values);
   const said = {
-    met: `a base ${width} wide (${half}) is enough (${now}${sure}).`,
-    "met more than once": `a base ${width} wide (${half}) is enough (${now}${sure}).`,
-    "all meet it": `every base tried is wide enough, from ${width} (${half}; ${now}).`,
-    "not met": `no base tried is wide enough (${now}).`,
+    met: enough,
+    "met more than once": enough,
+    "all meet it": t("every base tried is wide enough, from {width} (B = {half}; now {now}).", values),
+    "not met": t("no base tried is wide enough (now {now}).", values),
   }[each.outcome];
   return h("p", { "data-tendon": each.tendon, "data-value": each.half_width },
     h("b", {}, `${each.tendon}: `), said, each.note ? h("span", { class: "hint" }, ` ${each.note}`) : null);
 }
 
 function designs(curves) {
-  const head = ["Tendon", "B [m]", "h*₁/B", "Probability", "low", "high", "Median M_b [kN m]", "Runs"];
+  const head = [t("Tendon"), titled("B [{unit}]", "length"), "h*₁/B", t("Probability"), t("low"), t("high"),
+    titled(t("Median M_b [{unit}]"), "moment"), t("Runs")];
   const row = (c, i) => h("tr", {},
     h("th", { scope: "row" }, c.tendon),
-    h("td", {}, number(c.half_width[i])),
+    h("td", {}, number(c.x[i])),
     h("td", {}, number(c.aspect_ratio[i], 3)),
     h("td", { "data-value": c.probability[i] }, number(c.probability[i], 3)),
     h("td", {}, number(c.low[i], 3)),
     h("td", {}, number(c.high[i], 3)),
-    h("td", {}, number(c.median_base_moment[i] === null ? null : c.median_base_moment[i] / 1000)),
+    h("td", {}, valueIn(c.median_base_moment[i], "moment")),
     h("td", {}, String(c.n_runs[i])));
   return tableOf(head.map(symbol), curves.flatMap((c) => c.half_width.map((_, i) => row(c, i))));
 }
@@ -151,5 +156,5 @@ function band(c) {
   const kept = c.half_width.map((_, i) => i).filter((i) => c.low[i] !== null && c.high[i] !== null);
   if (kept.length < 2) return null;
   const of = (values) => kept.map((i) => values[i]);
-  return { kind: "band", x: of(c.half_width), low: of(c.low), high: of(c.high), color: c.look.color, alpha: 0.14 };
+  return { kind: "band", x: of(c.x), low: of(c.low), high: of(c.high), color: c.look.color, alpha: 0.14 };
 }

@@ -2,10 +2,11 @@
 
 import { attempt, get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
-import { unitOf } from "../choices.js";
 import { decode, h, latest, number, svg } from "../dom.js";
 import { between, select, slider, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { t } from "../texts.js";
+import { fromSI, inUnit, titled, unit, unitFor } from "../units.js";
 import { folder, uploading } from "./files.js";
 import { target } from "./target.js";
 
@@ -22,10 +23,10 @@ const PULSE = {
 };
 const TASKS = [["", t("Choose one ground motion")], ["target", t("Choose records for a target spectrum")]];
 const HISTORIES = [
-  ["acceleration", "a [m/s²]", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
-  ["vertical", "a_v [m/s²]", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
-  ["velocity", "v [m/s]", "c2", 110, t("Ground velocity over time"), t("velocity")],
-  ["displacement", "d [m]", "c3", 126, t("Ground displacement over time"), t("displacement")],
+  ["acceleration", "a [{unit}]", "acceleration", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
+  ["vertical", "a_v [{unit}]", "acceleration", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
+  ["velocity", "v [{unit}]", "velocity", "c2", 110, t("Ground velocity over time"), t("velocity")],
+  ["displacement", "d [{unit}]", "length", "c3", 126, t("Ground displacement over time"), t("displacement")],
 ];
 
 export default function earthquakeTab(app) {
@@ -52,9 +53,10 @@ export default function earthquakeTab(app) {
     folder: given.element,
   };
 
-  const charts = overTime(HISTORIES.map(([, yLabel, , height, over]) => ({ label: over, yLabel, height })));
+  const charts = overTime(HISTORIES.map(([, yLabel, quantity, , height, label]) => (
+    { label, yLabel: titled(yLabel, quantity), height })));
   const spectrum = new Chart({
-    label: t("Acceleration spectrum"), yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]", height: 230,
+    label: t("Acceleration spectrum"), yLabel: titled("Sa [{unit}]", "acceleration"), xLabel: t("period [s]"), xName: "T [s]", height: 230,
     xLog: true, zero: true,
   });
   const title = h("h2", { id: "record-title" });
@@ -73,8 +75,8 @@ export default function earthquakeTab(app) {
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(app.downloads(element, [["records", t("Your records (ZIP)")]]));
-  drawing.append(app.downloads(element, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
+  given.report.append(downloads(app, element, [["records", t("Your records (ZIP)")]]));
+  drawing.append(downloads(app, element, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);
@@ -86,23 +88,24 @@ export default function earthquakeTab(app) {
     const times = app.state.scale === 1 ? "" : ` × ${number(app.state.scale)}`;
     title.textContent = [answer.name, answer.title].filter(Boolean).join(" · ") + times;
     const x = decode(answer.t);
-    HISTORIES.forEach(([key, , color, , , name], i) => {
+    HISTORIES.forEach(([key, , quantity, color, , , label], i) => {
       charts[i].element.hidden = !answer[key];
       if (!answer[key]) return;
-      const level = key === "acceleration" && answer.lifting;
+      const { size } = unit(quantity);
+      const level = key === "acceleration" && answer.lifting / size;
       const lifting = { color: "c1", dash: [4, 4] };
       charts[i].set({
-        series: [{ x, y: decode(answer[key]), color, width: 1, label: name }],
+        series: [{ x, y: decode(answer[key]).map((value) => value / size), color, width: 1, label }],
         hlines: level ? [{ ...lifting, y: level, label: t("static uplift") }, { ...lifting, y: -level }] : [],
       });
     });
     measures.replaceChildren(...answer.measures.map((m) => h("div", {},
-      h("dt", {}, `${t(m.name)} [${m.unit}]`),
-      h("dd", { "data-measure": m.name, "data-value": m.value }, number(m.value)),
+      h("dt", {}, `${t(m.name)} [${unitFor(m.unit).name}]`),
+      h("dd", { "data-measure": m.name, "data-value": m.value }, number(fromSI(m.value, unitFor(m.unit)))),
       h("dd", { class: "hint" }, t(m.help)))));
     const first = answer.first_period;
     spectrum.set({
-      series: [{ x: decode(answer.periods), y: decode(answer.sa), color: "c0", label: "Sa" }],
+      series: [{ x: decode(answer.periods), y: decode(answer.sa).map((value) => value / unit("acceleration").size), color: "c0", label: "Sa" }],
       vlines: first ? [{ x: first, label: `T₁ = ${number(first, 3)} s`, color: "c1" }] : [],
     });
   }
@@ -126,9 +129,13 @@ export default function earthquakeTab(app) {
       control.setValue(now.pulse[key]);
       control.hidden = !about.pulses[now.pulse.shape].fields.includes(key);
     }
-    const unit = now.pulse.shape === "mavroeidis" ? "m/s" : "m/s²";
-    sliders.amplitude.querySelector(".unit").textContent = unit;
-    sliders.amplitude.querySelector(".hint").textContent = unit === "m/s" ? t("{range}, of the velocity", { range: between(0.1, 15, unit) }) : between(0.1, 15, unit);
+    const velocity = now.pulse.shape === "mavroeidis";
+    sliders.amplitude.setUnit(velocity ? "m/s" : "m/s²");
+    sliders.amplitude.setValue(now.pulse.amplitude);
+    const { low, high } = PULSE.amplitude[1];
+    const [from, to] = fromSI([low, high], sliders.amplitude.unit, 3);
+    const range = between(from, to, sliders.amplitude.unit.name);
+    sliders.amplitude.querySelector(".hint").textContent = velocity ? t("{range}, of the velocity", { range }) : range;
     for (const [key, panel] of Object.entries(panels)) panel.hidden = key !== now.source;
     if (now.source === "suite") thumbs.refresh();
     given.refresh();
@@ -142,15 +149,14 @@ export default function earthquakeTab(app) {
   return { element, refresh };
 }
 
-const GRAVITY = 9.81;
-
 function records(app) {
   const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": t("Records") });
   let shown = "";
 
   function thumb(suite, record) {
     const place = [record.event, record.station].filter(Boolean).join(", ");
-    const strength = [`PGA ${number(record.pga / GRAVITY, 3)} g`, h("br"), `PGV ${number(record.pgv, 3)} ${unitOf(app.about, "pgv")}`];
+    const { size, name } = unit("acceleration", "kN");
+    const strength = [`PGA ${number(record.pga / size, 3)} ${name}`, h("br"), `PGV ${inUnit(record.pgv, "velocity", 3)}`];
     return h("button", {
       type: "button", "data-record": record.name, title: place,
       onclick: () => app.change({ record: { source: "suite", suite, name: record.name } }),

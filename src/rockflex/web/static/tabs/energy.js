@@ -6,6 +6,7 @@ import { decode, h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { nameOf } from "../drawing.js";
 import { legend } from "../marks.js";
 import { t } from "../texts.js";
+import { titled, unit, valueIn } from "../units.js";
 
 export class Loop {
   constructor(options) {
@@ -55,7 +56,7 @@ export class Energy {
   constructor(chosen) {
     this.focus = "";
     this.chart = new Chart({
-      label: t("Energy over time"), yLabel: "energy [kJ]", xLabel: "time [s]", height: 240, zero: true, xName: "t [s]",
+      label: t("Energy over time"), yLabel: titled(t("energy [{unit}]"), "energy"), xLabel: t("time [s]"), height: 240, zero: true, xName: "t [s]",
     });
     this.keys = h("div");
     this.note = h("p", { class: "hint" });
@@ -76,16 +77,17 @@ export class Energy {
     if (energy.note) return;
     const until = view.models.find((m) => m.label === energy.label)?.fall_time ?? Infinity;
     const x = decode(energy.t);
+    const { size } = unit("energy");
     let below = new Float32Array(x.length);
     const series = [];
     for (const [name, label, tone = name] of PARTS) {
       const values = energy[name] ? decode(energy[name]) : [];
       if (!values.some((value) => value !== 0)) continue;
-      const high = below.map((value, i) => value + values[i] / 1000);
+      const high = below.map((value, i) => value + values[i] / size);
       series.push({ kind: "band", x, low: below, high, color: tone, alpha: 0.75, edge: true, label, until });
       below = high;
     }
-    const input = decode(energy.input).map((value) => value / 1000);
+    const input = decode(energy.input).map((value) => value / size);
     series.push({ x, y: input, color: "text", width: 1.2, label: t("input"), until });
     this.chart.set({
       series, xRange: [0, view.end],
@@ -95,8 +97,13 @@ export class Energy {
   }
 }
 
-const HEAD = ["Element", "F_max [kN]", "δ_max [mm]", "Dissipated [kJ]", "Yielded or slid"];
-const PRESTRESS = "Prestress left [kN]"; // of tendons
+// Name, heading and kind of quantity.
+const COLUMNS = [
+  ["force", t("F_max [{unit}]"), "force"],
+  ["elongation", t("δ_max [{unit}]"), "displacement"],
+  ["energy", t("Dissipated [{unit}]"), "energy"],
+];
+const PRESTRESS = ["prestress", t("Prestress left [{unit}]"), "force"]; // of tendons
 const CLOSING = [t("Weight and prestress need not close the base against its dissipators (λ = {ratio})."),
   t("Weight and prestress close the base against its dissipators (λ = {ratio}).")];
 const EDGES = { 1: t("After rocking to the right: {text}"), "-1": t("After rocking to the left: {text}") };
@@ -115,7 +122,8 @@ export class Elements {
     this.closing = h("p", { id: "closing" });
     this.table = h("div", { id: "elements" },
       h("h2", { class: "buttons" }, t("Elements at the base, by"), this.model), this.rows, this.closing);
-    this.loop = new Loop({ label: t("Force over elongation of an element"), yLabel: "F [kN]", xLabel: "δ [mm]" });
+    this.loop = new Loop({ label: t("Force over elongation of an element"),
+      yLabel: titled("F [{unit}]", "force"), xLabel: titled("δ [{unit}]", "displacement") });
     this.chart = h("div", {}, h("h2", { class: "buttons" }, t("Loop of"), this.of), this.loop.chart.element);
   }
 
@@ -130,23 +138,23 @@ export class Elements {
     this.of.replaceChildren(...names.map((name, i) => h("option", { value: i }, name)));
     this.element = view.element;
     this.of.value = String(view.element);
-    const tendons = held.rows.some((row) => row.prestress !== null);
-    const head = [...HEAD, ...(tendons ? [PRESTRESS] : [])].map(symbol);
-    this.rows.replaceChildren(tableOf(head, held.rows.map((row, i) => line(row, names[i], tendons))));
+    const last = held.rows.some((row) => row.prestress !== null) ? [PRESTRESS] : [];
+    const headings = (columns) => columns.map(([, text, quantity]) => titled(text, quantity));
+    const head = [t("Element"), ...headings(COLUMNS), t("Yielded or slid"), ...headings(last)].map(symbol);
+    this.rows.replaceChildren(tableOf(head, held.rows.map((row, i) => line(row, names[i], last))));
     this.closing.textContent = said(view.self_centring);
     this.loop.set(lifting.map((m) => ({
-      t: m.t, x: m.element_elongation.map((v) => v * 1000), y: m.element_force.map((v) => v / 1000),
+      t: m.t, x: m.element_elongation.map((v) => v / unit("displacement").size), y: m.scaled.element_force,
       until: m.fall_time ?? Infinity, label: m.label, look: m.look,
     })));
   }
 }
 
-function line(row, name, tendons) {
-  const value = (key, factor) => h("td", { "data-name": key, "data-value": row[key] }, number(row[key] === null ? null : row[key] * factor));
-  return h("tr", {}, h("th", { scope: "row" }, name),
-    value("force", 1e-3), value("elongation", 1e3), value("energy", 1e-3),
+function line(row, name, last) {
+  const value = ([key, , quantity]) => h("td", { "data-name": key, "data-value": row[key] }, valueIn(row[key], quantity));
+  return h("tr", {}, h("th", { scope: "row" }, name), COLUMNS.map(value),
     h("td", { "data-name": "yielded", class: row.broken ? "overturned" : null }, row.broken ? t("broke") : row.yielded ? t("yes") : t("no")),
-    tendons ? value("prestress", 1e-3) : null);
+    last.map(value));
 }
 
 function said(edges) {

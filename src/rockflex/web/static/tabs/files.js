@@ -4,6 +4,7 @@ import { attempt, get, isArchive, send, sendAll } from "../api.js";
 import { h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
 import { box, field, fileBox, select, trouble } from "../form.js";
 import { counted, t } from "../texts.js";
+import { inUnit, unit as unitIn } from "../units.js";
 
 const UNITS = [["", t("as in the file")], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
@@ -27,9 +28,9 @@ export function uploading(app, complain) {
     if (large) return;
     await attempt(async () => {
       const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step, under })}`, file);
-      const facts = { ...found, pga: number(found.pga), pva: number(found.pva) };
-      said.textContent = found.pva === null ? t("{name}: {samples} samples, PGA {pga} m/s²", facts)
-        : t("{name}: {samples} samples, PGA {pga} m/s², vertical {pva} m/s²", facts);
+      const values = { name: found.name, count: found.samples, pga: inUnit(found.pga, "acceleration"), pva: inUnit(found.pva, "acceleration") };
+      said.textContent = found.pva === null ? t("{name}: {count} samples, PGA {pga}", values)
+        : t("{name}: {count} samples, PGA {pga}, vertical {pva}", values);
       if (!vertical) along = found.upload;
       app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
     }, (error) => {
@@ -47,8 +48,7 @@ export function uploading(app, complain) {
     h("p", { class: "help" }, t("A link does not contain the file: whoever opens it needs the file, too.")));
 }
 
-const GRAVITY = 9.81;
-const HEAD = ["record", "PGA [g]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
+const HEAD = ["record", "PGA [{unit}]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
 
 // `complain` takes messages by the path of their field. `report` is the table, which belongs to the results.
 export function folder(app, complain) {
@@ -117,7 +117,7 @@ export function folder(app, complain) {
       counted(taken.length, t("{n} record taken."), t("{n} records taken.")), counted(left, t("{n} entry not taken."), t("{n} entries not taken.")),
       t("Recordings: {n}, with two horizontal components: {pairs}, of these with a vertical one, too: {upright}.", { n: found.stations.length, pairs: pairs.length, upright }),
     ].join(" ");
-    rows.replaceChildren(tableOf(HEAD.map(subscript), found.entries.map(row)));
+    rows.replaceChildren(tableOf(HEAD.map((text) => subscript(text.replace("{unit}", unitIn("acceleration", "kN").name))), found.entries.map(row)));
     stations.replaceChildren(tableOf([t("recording"), t("horizontal"), t("vertical")], found.stations.map((each) => h("tr", {},
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
     notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
@@ -131,7 +131,7 @@ export function folder(app, complain) {
     }
     const use = h("button", { type: "button", "data-given": entry.name, title: t("Use this record"), onclick: () => (
       put({ source: "folder", given: entry.name })) }, entry.name);
-    const pga = h("td", { "data-value": entry.pga }, number(entry.pga / GRAVITY, 3));
+    const pga = h("td", { "data-value": entry.pga }, number(entry.pga / unitIn("acceleration", "kN").size, 3));
     const facts = [entry.magnitude, entry.distance, entry.vs30].map((value) => h("td", {}, number(value)));
     const recording = [entry.recording ?? "–", entry.vertical ? t("with vertical") : "", entry.reason ? `(${entry.reason})` : ""].filter(Boolean);
     return h("tr", { "data-file": entry.file },

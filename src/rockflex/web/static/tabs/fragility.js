@@ -1,12 +1,13 @@
 // Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
-import { axisOf, measuresOf, models } from "../choices.js";
+import { axisOf, measuresOf, models, unitOf } from "../choices.js";
 import { h, number, scrolled, tableOf } from "../dom.js";
 import { select } from "../form.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
 import { t } from "../texts.js";
+import { fromSI, unitFor } from "../units.js";
 
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
@@ -65,7 +66,9 @@ export default function fragilityTab(app) {
     drawing.hidden = !answer.curves.length;
     empty.hidden = !drawing.hidden;
     curves.options.xLabel = cloud.options.xLabel = label;
-    const all = answer.curves.map((curve, i) => ({ ...curve, look: look(i) }));
+    const own = unitFor(unitOf(app.about, choice().measure));
+    const { size } = own;
+    const all = answer.curves.map((curve, i) => ({ ...curve, look: look(i), im: curve.im.map((value) => value / size) }));
     const fitted = all.filter((curve) => curve.p);
     curves.set({
       yRange: [-0.02, 1.02],
@@ -74,7 +77,7 @@ export default function fragilityTab(app) {
           { kind: "band", x: c.im, low: c.low, high: c.high, color: c.look.color, alpha: 0.16 })),
         ...fitted.map((c) => ({ x: c.im, y: c.p, label: c.model, ...c.look, width: 2 })),
         ...all.map((c) => ({
-          kind: "points", x: c.observed.map(([im]) => im), y: c.observed.map(([, share]) => share),
+          kind: "points", x: c.observed.map(([im]) => im / size), y: c.observed.map(([, share]) => share),
           color: c.look.color, hollow: true, size: 3.4, width: 1.4,
         })),
       ],
@@ -83,13 +86,13 @@ export default function fragilityTab(app) {
     cloud.set({
       yRange: [1e-5, 2],
       series: all.map((c) => ({
-        kind: "points", x: c.point_im, y: c.point_rotation.map((v) => Math.max(v, FOOT)),
+        kind: "points", x: c.point_im.map((value) => value / size), y: c.point_rotation.map((v) => Math.max(v, FOOT)),
         color: c.look.color, alpha: 0.55, size: 2.2,
       })),
       hlines: at ? [{ y: at, label: t("limit"), color: "c1" }] : [],
     });
     keys.replaceChildren(legend(all.map((c) => ({ label: c.model, ...c.look }))));
-    table.replaceChildren(fits(answer.curves, label));
+    table.replaceChildren(fits(answer.curves, label, own));
     remarks.set(answer.notes);
   }
 
@@ -101,14 +104,14 @@ export default function fragilityTab(app) {
     rotation.hidden = choice().limit !== "rotation";
     study.refresh();
   }
-  return { element, refresh, close: () => study.close() };
+  return { element, refresh, close: (runs) => study.close(runs) };
 }
 
-function fits(curves, label) {
+function fits(curves, label, own) {
   const head = [t("Model"), t("Runs"), t("Exceeding the limit"), t("Median {measure}", { measure: label })];
   return tableOf(head, curves.map((c) => h("tr", { "data-model": c.model },
     h("th", { scope: "row" }, c.model),
     h("td", { "data-name": "n" }, String(c.n)),
     h("td", { "data-name": "n_exceeding" }, String(c.n_exceeding)),
-    h("td", { "data-name": "median", "data-value": c.median }, number(c.median)))));
+    h("td", { "data-name": "median", "data-value": c.median }, number(fromSI(c.median, own))))));
 }

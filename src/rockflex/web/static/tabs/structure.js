@@ -1,10 +1,14 @@
 // Structure: a drawing that moves and is a form, the whole form folded by task, modes, and how many of them are needed.
 
+import { alternatives } from "../alternatives.js";
 import { attempt, send } from "../api.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
+import { project } from "../project.js";
 import { t } from "../texts.js";
+import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { base, elements, ground, without } from "./base.js";
 import { runs } from "./runs.js";
 
@@ -78,16 +82,19 @@ export default function structureTab(app) {
     app.change({});
   });
   const options = runs(app, () => null);
+  const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw());
+  const saved = project(app);
   const facts = h("div");
   const more = folded("modes", t("Modes, masses, and which model to use"), facts);
-  const results = h("div", { class: "results" }, more, app.next("response", t("Next: see forces and energies over time.")));
+  const results = h("div", { class: "results" }, kept.element, more, app.next("response", t("Next: see forces and energies over time.")),
+    app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
   const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
       folded("structure", t("Structure: all fields"), kind, field("structure.name", t("Name"), name),
         h("div", { "data-path": "structure" }, fields, trouble())),
       held, below, folded("runs", t("Models and assumptions"), options.element),
-      folded("import", t("Import matrices"), importMatrices(limits.file, current, (structure) => put(structure, true)))),
+      folded("import", t("Import matrices"), importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
     results);
 
   // The first preset of a kind, or default values.
@@ -161,7 +168,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(app.downloads(element, [["report", t("Report (HTML)")], ["modes", t("Modes (SVG)")], ["structure", t("Structure (TOML)")]]));
+  results.append(downloads(app, element, [["report", t("Report (HTML)")]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
@@ -210,9 +217,11 @@ export default function structureTab(app) {
       results.classList.add("stale");
       form();
       below.refresh();
+      kept.refresh();
+      saved.refresh();
       options.refresh();
+      shown.quick.refresh();
     }
-    shown.quick.refresh();
     shown.resume();
     load();
   }
@@ -222,8 +231,9 @@ export default function structureTab(app) {
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
 
 function parameter(p) {
-  const value = p.none ? t("none: {reason}", { reason: t(p.none) }) : number(p.value);
-  return h("div", {}, h("dt", {}, symbol(p.symbol), p.unit ? ` [${p.unit}]` : ""),
+  const own = p.quantity ? unit(p.quantity) : unitFor(p.unit);
+  const value = p.none ? t("none: {reason}", { reason: t(p.none) }) : number(fromSI(p.value, own));
+  return h("div", {}, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.edge ? EDGES[p.edge].replace("{fact}", t(p.help)) : t(p.help, p)));
 }
 
@@ -414,14 +424,17 @@ function picture(view, shape, n) {
 function table(view) {
   if (!view.modes.length)
     return h("p", { class: "help" }, t("A rigid block has no modes. Use the model “rigid”."));
-  const edges = view.modes[0].uplifted.length > 1 ? [", right edge", ", left edge"] : [""];
-  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "Share of total mass", "Height h* [m]", "Damping",
-    ...edges.flatMap((edge) => [`Period while uplifted${edge} [s]`, `Damping while uplifted${edge}`])];
-  const value = (v) => h("td", { "data-value": v }, number(v));
+  const uplifted = view.modes[0].uplifted.length > 1 ? [
+    t("Period while uplifted, right edge [s]"), t("Damping while uplifted, right edge"),
+    t("Period while uplifted, left edge [s]"), t("Damping while uplifted, left edge"),
+  ] : [t("Period while uplifted [s]"), t("Damping while uplifted")];
+  const head = [t("Mode"), t("Period T [s]"), titled(t("Mass m* [{unit}]"), "mass"), t("Share of total mass"),
+    titled(t("Height h* [{unit}]"), "length"), t("Damping"), ...uplifted];
+  const value = (v, quantity = "time") => h("td", { "data-value": v }, valueIn(v, quantity));
   const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);
   const rows = view.modes.slice(0, ROWS).map((m, i) => h("tr", {},
     h("th", { scope: "row" }, String(i + 1)),
-    value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
+    value(m.period), value(m.effective_mass, "mass"), percent(m.mass_share), value(m.effective_height, "length"), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
     scrolled(t("Modes"), {}, tableOf(head, rows, { id: "modes" })),

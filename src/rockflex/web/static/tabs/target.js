@@ -5,8 +5,10 @@ import { Chart } from "../chart.js";
 import { CHOSEN, GIVEN, suitesOf } from "../choices.js";
 import { h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { box, field, fileBox, parseNumber, select, tableField, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { legend } from "../marks.js";
 import { t } from "../texts.js";
+import { titled, unit } from "../units.js";
 
 const KINDS = [
   ["ec8", "EN 1998-1:2004"], ["ec8_second", t("EN 1998-1-1:2024 (second generation)")],
@@ -89,10 +91,11 @@ export function target(app, root) {
   const spectra = new Spectra();
   const used = h("p", { class: "help", id: "used", role: "status" });
   const use = h("button", { type: "button", class: "primary", id: "use", onclick: () => {
-    app.change({ cloud: { suites: [CHOSEN] }, design: { suites: [CHOSEN] } });
-    used.textContent = t("The Fragility and Design tabs use these records, with these factors times the scale factors given there.");
+    app.change(Object.fromEntries(["cloud", "design", "record_set"].map((kind) => [kind, { suites: [CHOSEN] }])));
+    used.textContent = t("The set of records on the Response tab, and the Fragility and Design tabs use these records, with these factors times the scale factors given there.");
   } }, t("Use as the suite of the studies"));
-  const results = h("section", { id: "selection", hidden: true }, said, spectra.element, h("div", { class: "buttons" }, use), used);
+  const results = h("section", { id: "selection", hidden: true }, said, spectra.element, h("div", { class: "buttons" }, use), used,
+    app.next("response", t("Next: design for these records."), { record_set: { shown: true, suites: [CHOSEN] } }, t("Set of records")));
 
   async function read(file) {
     const content = file.size > 4 * LONGEST ? "" : await file.text();
@@ -139,7 +142,7 @@ export function target(app, root) {
     whole.hidden = now().source !== GIVEN;
     load();
   }
-  const files = app.downloads({ querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
+  const files = downloads(app, { querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
     [["selection", t("Records (CSV)")], ["selection-spectra", t("Spectra (CSV)")], ["selection-figure", t("Figure (SVG)")],
       ["selection-records", t("Scaled records (ZIP)")], ["selection-python", t("Python lines")], ["records", t("Your records (ZIP)")]]);
   const whole = files.querySelector('[data-file="records"]'); // which the program reads
@@ -152,7 +155,7 @@ const HEAD = ["record", "earthquake", "M", "R [km]", "V_s30 [m/s]", "factor", "m
 class Spectra {
   constructor() {
     this.chart = new Chart({
-      label: t("Spectra of the chosen records over the period"), yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]",
+      label: t("Spectra of the chosen records over the period"), yLabel: titled("Sa [{unit}]", "acceleration"), xLabel: t("period [s]"), xName: "T [s]",
       height: 360, xLog: true, yLog: true,
     });
     this.title = h("h2", { id: "target-title" });
@@ -176,15 +179,16 @@ class Spectra {
       [t("largest spread"), answer.dispersion, t("standard deviation of ln S_a")],
     ].map(([name, value, help]) => h("div", {}, h("dt", {}, name), h("dd", { "data-fact": name, "data-value": value }, number(value)),
       h("dd", { class: "hint" }, symbol(help)))));
+    const inOwn = (values) => values.map((value) => value / unit("acceleration").size);
     const lines = [
-      { y: answer.wanted, label: t("target"), color: "c1", width: 2.2 },
-      { y: answer.mean, label: t("mean"), color: "c0", width: 2.2 },
+      { y: inOwn(answer.wanted), label: t("target"), color: "c1", width: 2.2 },
+      { y: inOwn(answer.mean), label: t("mean"), color: "c0", width: 2.2 },
     ].map((each) => ({ x, ...each }));
     this.chart.set({
       spans: [[low, high]],
       series: [
-        ...(answer.singles.length > 1 ? [{ kind: "band", x, low: answer.low, high: answer.high, color: "c0", alpha: 0.16 }] : []),
-        ...answer.singles.map((y) => ({ x, y, color: "muted", width: 0.8, alpha: 0.7 })),
+        ...(answer.singles.length > 1 ? [{ kind: "band", x, low: inOwn(answer.low), high: inOwn(answer.high), color: "c0", alpha: 0.16 }] : []),
+        ...answer.singles.map((y) => ({ x, y: inOwn(y), color: "muted", width: 0.8, alpha: 0.7 })),
         ...lines,
       ],
     });

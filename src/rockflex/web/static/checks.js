@@ -1,0 +1,54 @@
+// Checks of a run or a set of records against limits: the form of the limits, and the table.
+
+import { h, number, scrolled, symbol, tableOf } from "./dom.js";
+import { box, folded } from "./form.js";
+import { t } from "./texts.js";
+
+// Name, label, unit, and what the limit is or where one is found.
+const limits = () => [
+  ["drift_ratio", t("Story drift over story height"), "", t("EN 1998-1:2004, 4.4.3.2; ASCE 7-16, Table 12.12-1")],
+  ["rotation_ratio", t("Rotation over α"), "", t("α: where the static moment vanishes")],
+  ["friction", t("Friction between base and ground"), "", t("coefficient that is available")],
+  ["slip", t("Slip of the base"), "m", t("of a base that can slide")],
+  ["seat_width", t("Displacement of the top"), "m", t("at which what lies on it loses its seat; EN 1998-2:2005, 6.6.4")],
+  ["tendon_ratio", t("Tendon force over yield force"), "", t("1 without an entry")],
+  ["fuse_strain", t("Strain of a fuse"), "", t("from tests of the bar")],
+  ["fuse_length", t("Length of a fuse that yields"), "m", t("for its strain")],
+  ["bearing_pressure", t("Pressure under the base"), "Pa", t("EN 1997-1:2004, Annex D")],
+  ["contact_ratio", t("Least length in contact over 2 B"), "", t("up to 1; EN 1997-1:2004, 6.5.4")],
+  ["toe_stress", t("Stress at the toe"), "Pa", t("EN 1992-1-1:2004, 3.1.6 and 6.7")],
+  ["toe_length", t("Length of the bearing at the toe"), "m", t("for the stress at the toe")],
+  ["breadth", t("Breadth of the base out of the plane"), "m", t("for pressures on rigid ground and at the toe")],
+  ["moment_ratio", t("Base moment over resisting moment"), "", t("without an entry uplift is told, and not limited")],
+];
+
+export function limitsForm(app) {
+  const entry = ([name, label, unit, hint]) => box(`limits.${name}`, label, app.state.limits[name],
+    (value) => app.change({ limits: { [name]: value === "" ? undefined : value } }), { unit, hint });
+  return folded("limits", t("Limits of the checks"),
+    h("p", { class: "hint" }, t("All optional. Without an entry the rotation, tendons and breaking elements are checked, against the limits that the table names.")),
+    limits().map(entry));
+}
+
+// The heading and the table of the checks of `of`.
+export function checksTable({ rows, missing, unlimited }, of) {
+  const head = [t("check"), t("result"), t("demand"), t("limit"), t("ratio"), t("source of the limit, or what happens")];
+  return h("section", { class: "checks" },
+    h("h2", {}, t("Checks of {what}", { what: of })),
+    scrolled(t("Checks"), {}, tableOf(head, rows.map(row))),
+    unlimited.length ? h("p", { class: "hint" }, t("Without a limit: {names}. Give one under “Limits of the checks”.", { names: unlimited.map((name) => t(name)).join(", ") })) : null,
+    missing.map(([name, lacks]) => h("p", { class: "hint" }, t("Not checked: {name}: {reason}.", { name: t(name), reason: lacks }))));
+}
+
+function row(each) {
+  const verdict = { true: t("ok"), false: t("fails") }[each.ok] ?? "–";
+  const value = (x) => (x === null ? "–" : `${number(x)} ${each.unit}`.trim());
+  const source = each.source === "user" ? t("given here") : t(each.source) || each.note.split("; ")[0];
+  return h("tr", { "data-check": each.name },
+    h("th", { scope: "row" }, t(each.name)),
+    h("td", { "data-name": "ok", class: each.ok === false ? "overturned" : null }, verdict),
+    h("td", { "data-name": "demand", "data-value": each.value }, value(each.demand)),
+    h("td", {}, (each.at_least ? "≥ " : "") + value(each.limit)),
+    h("td", { "data-name": "ratio", "data-value": each.ratio }, number(each.ratio, 3)),
+    h("td", { class: "words" }, symbol(source)));
+}

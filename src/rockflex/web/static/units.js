@@ -1,0 +1,41 @@
+// The units in which values are shown and typed; the state, links and files are in SI units.
+
+import { number } from "./dom.js";
+
+let table = {}; // units of each system by the kind of quantity
+let system = "";
+
+export function setUnits(units, name) {
+  [table, system] = [units, name];
+}
+
+// The unit of a kind of quantity; the system "kN" has that of `usual`: accelerations are in m/s² there.
+export const unit = (quantity, usual = quantity === "acceleration" ? "SI" : "kN") => table[system === "kN" ? usual : system][quantity];
+
+// Kinds of quantities of which others have the same unit in SI; rotations that are typed are in rad in every system.
+const KINDS = { m: "length", "N/m²": "elastic modulus", Pa: "stress", rad: "" };
+
+// The unit that is shown for one of SI.
+export function unitFor(si) {
+  const quantity = KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
+  return quantity ? unit(quantity) : { size: 1, name: si };
+}
+
+// A text with the name of its unit in place of "{unit}".
+export const titled = (text, quantity) => text.replace("{unit}", unit(quantity).name);
+
+export const valueIn = (value, quantity, digits) => number(fromSI(value, unit(quantity)), digits);
+
+export const inUnit = (value, quantity, digits) => `${valueIn(value, quantity, digits)} ${unit(quantity).name}`;
+
+// Numbers, and those in lists, maps and matrices; words such as "inf" stay.
+export function eachNumber(value, change) {
+  if (typeof value === "number") return change(value);
+  if (value === null || typeof value !== "object") return value;
+  if (Array.isArray(value)) return value.map((each) => eachNumber(each, change));
+  return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, eachNumber(each, change)]));
+}
+
+// Without the last digits, which only rounding makes.
+export const fromSI = (value, { size }, digits = 12) => eachNumber(value, (each) => (size === 1 ? each : Number((each / size).toPrecision(digits))));
+export const toSI = (value, { size }) => eachNumber(value, (each) => (size === 1 ? each : Number((each * size).toPrecision(15))));

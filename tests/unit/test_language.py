@@ -1,0 +1,220 @@
+"""The catalogues of texts: complete, without leftovers, and used by reports, figures and commands."""
+
+import ast
+import html
+import io
+import re
+from collections import Counter
+from pathlib import Path
+from string import Formatter
+from typing import get_args
+
+import numpy as np
+import pytest
+from babel.messages.extract import extract_javascript
+from jinja2.ext import extract_from_ast
+from scipy import constants
+from typer.testing import CliRunner
+
+import rockflex as rf
+from report_case import FRAME, HELD, PULSE, SPRINGS, runs
+from rockflex._language import Language, catalogue, chosen_language, translated, use_language
+from rockflex.cli._app import app
+from rockflex.modal import BARS
+from rockflex.plot._history import _QUANTITIES
+from rockflex.plot._loops import _ELEMENT_NAMES
+from rockflex.plot._record_set import LABELS, LINES
+from rockflex.report._publication_files import jinja_templates_in
+from rockflex.report.run._report_tables import ASSUMPTIONS, SIDES, STATUS
+from rockflex.report.run._set_page import STATISTIC_HEADS
+from rockflex.report.run._sheet import TEMPLATES
+from rockflex.response import DEMANDS, STATISTICS
+from rockflex.response._limit_checks import KINDS, SOURCES
+
+EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+OTHERS = [name for name in get_args(Language) if name != "en"]
+SOURCE = TEMPLATES.parents[2]
+
+
+def texts_of_call(argument):
+    """The texts that the first argument of translated() may have."""
+    if isinstance(argument, ast.IfExp):
+        yield from (*texts_of_call(argument.body), *texts_of_call(argument.orelse))
+    elif isinstance(argument, ast.Constant):
+        yield argument.value
+
+
+def texts_in_python():
+    for file in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "translated":
+                yield from texts_of_call(node.args[0])
+
+
+def texts_in_templates():
+    environment = jinja_templates_in(TEMPLATES)
+    for file in TEMPLATES.glob("*.jinja"):
+        for _, _, text in extract_from_ast(environment.parse(file.read_text("utf-8")), ("t",)):
+            yield text if isinstance(text, str) else text[0]
+
+
+def texts_in_scripts():
+    for file in (SOURCE / "web" / "static").rglob("*.js"):
+        with file.open("rb") as content:
+            for _, _, text, _ in extract_javascript(content, ("t",), (), {"template_string": True}):
+                yield text if isinstance(text, str) else text[0]
+
+
+def words_of_class(name):
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
+
+
+def labels():
+    """The texts that are looked up by value, from the tables that hold them."""
+    kinds = {name: it for name, it in vars(rf.structure).items() if isinstance(it, type) and hasattr(it, "rocking")}
+    modified = {name for name, it in kinds.items() if issubclass(it, rf.structure._structure.ModifiedStructure)}
+    yield from (words_of_class(name) for name in kinds if name not in modified)
+    yield from (words_of_class(name).lower() for name in modified)
+    yield from (*STATUS.values(), *ASSUMPTIONS, *SIDES, *STATISTICS.values(), *STATISTIC_HEADS.values(), *SOURCES)
+    yield from (text for demand in DEMANDS.values() for text in (demand.symbol, demand.compared_as))
+    yield from (each.name for each in KINDS)
+    yield from (text for each in _QUANTITIES.values() for text in (each.symbol, each.words))
+    yield from (*_ELEMENT_NAMES.values(), *LABELS.values(), *(label for *_, label in LINES.values()))
+    yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
+
+
+def has_word(text):
+    """Whether there is more than symbols, which are the same in all languages."""
+    return re.search(r"\b[^\W\d_]{3,}", re.sub(r"\$[^$]*\$|\{\w+\}", "", text))
+
+
+def names_in(text):
+    return {name for _, name, _, _ in Formatter().parse(text) if name}
+
+
+@pytest.fixture(scope="module")
+def known():
+    used = {*texts_in_python(), *texts_in_templates(), *texts_in_scripts()}
+    return used, used | {text for text in labels() if has_word(text)}
+
+
+def test_every_source_is_read(known):
+    texts, _ = known
+    assert {"Length of the run", "{n} records", "{n} record", "Largest values"} <= texts
+    script = io.BytesIO(b'h("p", t("{count} records", { count: 7 })); t("one"); t(`two`)')
+    found = [text for _, _, text, _ in extract_javascript(script, ("t",), (), {"template_string": True})]
+    assert [text if isinstance(text, str) else text[0] for text in found] == ["{count} records", "one", "two"]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_no_text_is_missing_and_none_is_unused(known, name):
+    texts, have = known[1], set(catalogue(name))
+    assert (sorted(texts - have), sorted(have - texts)) == ([], [])
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_translations_have_the_values_and_symbols_of_their_texts(name):
+    symbols = re.compile(r"[A-Za-zα-ωΑ-Ω]+\*?_[\w*–]+(?![\w}])|[θμαλΣ|≥<>†²]")
+    for text, other in catalogue(name).items():
+        assert other.strip() == other if text.strip() == text else other[0] == text[0], text
+        assert names_in(other) == names_in(text), text
+        assert Counter(symbols.findall(other)) == Counter(symbols.findall(text)), text
+        assert text[-1] not in ".:" or other[-1] == text[-1], text
+
+
+RESULTS = {
+    "run": lambda: runs(HELD, PULSE, ["2DOF-S"], ground=SPRINGS),
+    "fall": lambda: runs(FRAME, rf.ricker_pulse(9.0, 1.6), ["2DOF-S", "MDOF-C"]),
+    "set": lambda: rf.simulate_set(FRAME, [rf.one_sine_pulse(3.0, period) for period in (0.5, 0.6, 0.7)], "2DOF-S"),
+    "comparison": lambda: rf.compare({"a": FRAME, "b": HELD}, [PULSE, rf.one_sine_pulse(3.0, 0.6)]),
+}
+
+
+def values_in(page):
+    return re.findall(r'data-of="(\w+)" data-value="([^"]*)"', page)
+
+
+@pytest.mark.parametrize("kind", RESULTS)
+def test_a_report_has_no_english_text_left_and_the_same_values(kind, tmp_path):
+    result = RESULTS[kind]()
+    in_english = rf.write_report(result, tmp_path / "en.html", date="2030").read_text("utf-8")
+    assert '<html lang="en">' in in_english
+    for name in OTHERS if kind == "run" else ["de"]:
+        page = rf.write_report(result, tmp_path / f"{name}.html", date="2030", language=name).read_text("utf-8")
+        assert f'<html lang="{name}">' in page
+        assert values_in(page) == values_in(in_english)
+        shown = re.sub(r"<style.*?</style>|<path[^>]*>|</?su[bp]>", "", page, flags=re.DOTALL)
+        words = {text for text, other in catalogue(name).items() if len(text.split()) > 2 and text != other}
+        left = [text for text in words if re.sub(r"\b_|\^", "", html.escape(text)) in shown]
+        assert left == []
+        assert not re.search(r'data-value="[^"]*">[^<]*\d\.\d', shown)
+
+
+def test_a_block_ends_with_the_language_around_it():
+    assert chosen_language() == ("en", ".")
+    with use_language("de"):
+        assert (translated("Largest values"), chosen_language()) == ("Größtwerte", ("de", ","))
+        with use_language("en"):
+            assert (translated("Largest values"), chosen_language()[1]) == ("Largest values", ".")
+        with use_language(None, "."):
+            assert chosen_language() == ("de", ".")
+        assert translated("a name of {a user}") == "a name of {a user}"
+    assert chosen_language() == ("en", ".")
+
+
+def test_the_decimal_sign_may_be_chosen(tmp_path):
+    (run,) = runs(FRAME, PULSE, ["2DOF-S"])
+    page = rf.write_report(run, tmp_path / "r.html", language="de", decimal=".").read_text("utf-8")
+    assert "Größtwerte" in page
+    assert re.search(r">\d+\.\d+<", page)
+    assert not re.search(r">\d+,\d+<", page)
+
+
+def labels_of(axes):
+    axes.figure.draw_without_rendering()
+    return [text.get_text() for text in axes.get_yticklabels()]
+
+
+def test_figures_follow_the_language_the_units_and_the_sign():
+    (run,) = runs(HELD, PULSE, ["2DOF-S"])
+    usual = rf.plot_history(run, panels=["rotation", "base_moment"])
+    with rf.figure_style(units="kip-in", language="fr"):
+        figure = rf.plot_history(run, panels=["rotation", "base_moment"])
+        loops = rf.plot_loops(run)
+    rotation, moment = figure.axes
+    assert (rotation.get_ylabel(), moment.get_ylabel()) == ("θ [rad]", "$M_b$ [kip in]")
+    assert moment.get_xlabel() == "temps [s]"
+    inches = constants.lbf * constants.inch
+    drawn, before = (axes.get_lines()[0].get_ydata() for axes in (moment, usual.axes[1]))
+    assert usual.axes[1].get_ylabel() == "$M_b$ [MN m]"
+    np.testing.assert_allclose(drawn * 1e3 * inches, before * 1e6, rtol=1e-12)
+    assert any("," in text for text in labels_of(rotation))
+    assert not any("." in text for axes in figure.axes for text in labels_of(axes))
+    assert [axes.get_xlabel() for axes in loops.axes[1:]] == ["δ [in]"] * (len(loops.axes) - 1)
+    assert not any("," in text for text in labels_of(usual.axes[0]))
+
+
+@pytest.mark.parametrize(("option", "value"), [("language", "la"), ("units", "kips"), ("decimal", ";")])
+def test_unknown_styles_are_refused(option, value):
+    with pytest.raises(rf.InputError, match=option) as caught, rf.figure_style(**{option: value}):
+        pass
+    assert caught.value.field == option
+
+
+def test_commands_write_reports_in_a_language(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    pier = str(EXAMPLES / "bridge_pier.toml")
+    commands = {
+        "run": ["run", pier, "el-centro-1940", "--model", "2DOF-S", "--report", "run.html"],
+        "compare": ["compare", pier, str(EXAMPLES / "restrained_pier.toml"), "el-centro-1940", "--out", "compare.html"],
+        "check": [*("check", pier, "el-centro-1940", "--report", "check.html")],
+    }
+    for name, words in commands.items():
+        done = CliRunner().invoke(app, [*words, "--language", "it"])
+        assert done.exit_code == 0, done.output
+        page = (tmp_path / f"{name}.html").read_text("utf-8")
+        assert '<html lang="it">' in page
+        assert "Legge d&#39;urto" in page
+    refused = CliRunner().invoke(app, ["run", pier, "el-centro-1940", "--language", "it"])
+    assert refused.exit_code == 2
+    assert "--language" in refused.output
