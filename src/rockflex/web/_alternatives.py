@@ -102,5 +102,6 @@ def comparison_report_file(state: PageState, uploads: UploadedRecords, suffix: s
     project = project_of_state(state, uploads)
     with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
-        file = write_report(comparison, Path(folder) / f"comparison{suffix}", units=state.units, **dict(project.head))
+        told = {"units": state.units, "language": state.language, **project.head}
+        file = write_report(comparison, Path(folder) / f"comparison{suffix}", **told)
         return file.name, file.read_bytes()

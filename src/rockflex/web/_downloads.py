@@ -48,6 +48,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             structure=built.structure,
             motion=motion,
             units=state.units,
+            language=state.language,
             **{"title": f"{name} under {motion.name or 'a ground motion'}{times}"} | state.head_texts(),
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
             limits=state.check_limits(),

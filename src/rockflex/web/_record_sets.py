@@ -148,6 +148,7 @@ def _record_set_report(job: RecordSetJob, state: PageState) -> str:
         found,
         structure=study.built.structure,
         units=state.units,
+        language=state.language,
         title=f"{name} under {len(found.responses)} records",
         limits=state.check_limits(friction=study.friction),
     )
