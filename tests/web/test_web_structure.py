@@ -102,7 +102,7 @@ def test_the_numbers_of_elements_are_the_librarys(client, pier_run) -> None:
     assert [row["prestress"] for row in held["rows"]] == [run.remaining_prestress[0], None, None]
     assert not any(row["broken"] for row in held["rows"])
     fixed, lifting = answer["models"]
-    assert fixed["element_force"] is None
+    assert "element_force" not in fixed
     drawn = [client.unpack(lifting[name]) for name in ("t", "element_elongation", "element_force")]
     nodes = np.column_stack((run.time, run.element_elongation[:, 2], run.element_force[:, 2])).astype("<f4")
     assert {tuple(row) for row in np.column_stack(drawn)} <= {tuple(row) for row in nodes.astype(float)}
