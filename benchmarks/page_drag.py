@@ -1,18 +1,24 @@
-"""How often a drawing follows a handle that is dragged: answers a second and their time, on as many cores as asked.
+"""How often a drawing follows a handle that is dragged, on as many cores as asked, and what each answer costs.
 
     taskset -c 0 python benchmarks/page_drag.py
 
-One core then holds the server, the engine and Chromium. Pointer events come 120 times a second.
+One core then holds the server, the engine and Chromium. Pointer events come once a frame. The time of the processor for
+each update, and the ratio of the server's to one run of the library, do not depend on what else the machine does.
 """
 
 import shutil
 import threading
 import time
+from typing import Any
 
+import psutil
 import uvicorn
 from playwright.sync_api import Page, sync_playwright
+from timing import least
 
+import rockflex as rf
 from rockflex.web import make_app
+from rockflex.web._state import parse_page_state
 
 PORT = 18_322
 SECONDS = 3.0  # of a drag
@@ -75,9 +81,34 @@ HELD = """() => rockflexPage.change({
 
 def drag(page: Page, title: str, name: str, across: float, up: float) -> None:
     page.wait_for_timeout(3000)
+    before = processor_time()
     updates, answer, drawing = page.evaluate(DRAG, [name, across, up, SECONDS])
-    told = f"{updates:4.0f} updates/s, answer {answer:5.1f} ms, drawing {drawing:4.1f} ms"
-    print(f"{title[:44]:44} {name}: {told}")
+    server, browser = (1e3 * (now - then) for now, then in zip(processor_time(), before, strict=True))
+    count = updates * SECONDS
+    alone = 1e3 * one_run(page.evaluate("rockflexPage.state"))
+    print(f"{title}, {name}: {updates:.0f} updates/s, answer {answer:.1f} ms, drawing {drawing:.1f} ms")
+    ratio = f"{server / count / alone:.2f} runs"
+    print(f"    processor: server {server / count:.1f} ms = {ratio}, Chromium {browser / count:.1f} ms")
+
+
+def processor_time() -> tuple[float, float]:
+    """Processor time of the server and of Chromium so far, in s."""
+    own = psutil.Process()
+    times = [sum(each.cpu_times()[:2]) for each in (own, *own.children(recursive=True))]
+    return times[0], sum(times[1:])
+
+
+def one_run(content: dict[str, Any]) -> float:
+    """Processor time of `rf.simulate` with history, of a structure whose modes are known, in s."""
+    state = parse_page_state(content)
+    motion = rf.load_suite(state.record.suite)[state.record.name].scaled(state.scale)
+
+    def run() -> None:
+        p = state.structure.build().rocking()
+        ground = None if state.ground is None else state.ground.under(p)
+        rf.simulate(p, motion, "2DOF-S", ground=ground, free_vibration=state.free_vibration)
+
+    return least(run, 10, time.process_time)
 
 
 def main() -> None:
@@ -95,8 +126,8 @@ def main() -> None:
             page.get_by_label("Start from").select_option(label=title)
             if held:
                 page.evaluate(HELD)
-            drag(page, title + ", tendon, fuses, springs" * held, "B", 60.0, 0.0)
-            drag(page, title, "H", 0.0, 60.0)
+            for name, across, up in (("B", 60.0, 0.0), ("H", 0.0, 60.0)):
+                drag(page, title + ", devices, springs" * held, name, across, up)
         browser.close()
     server.should_exit = True
 

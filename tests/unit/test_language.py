@@ -1,18 +1,25 @@
 """The catalogues of texts: complete, without leftovers, and used by reports, figures and commands."""
 
 import ast
+import html
 import io
 import re
 from collections import Counter
+from pathlib import Path
 from string import Formatter
 from typing import get_args
 
+import numpy as np
 import pytest
 from babel.messages.extract import extract_javascript
 from jinja2.ext import extract_from_ast
+from scipy import constants
+from typer.testing import CliRunner
 
 import rockflex as rf
-from rockflex._language import Language, catalogue
+from report_case import FRAME, HELD, PULSE, SPRINGS, runs
+from rockflex._language import Language, catalogue, chosen_language, translated, use_language
+from rockflex.cli._app import app
 from rockflex.modal import BARS
 from rockflex.plot._history import _QUANTITIES
 from rockflex.plot._loops import _ELEMENT_NAMES
@@ -24,6 +31,7 @@ from rockflex.report.run._sheet import TEMPLATES
 from rockflex.response import DEMANDS, STATISTICS
 from rockflex.response._limit_checks import KINDS, SOURCES
 
+EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 OTHERS = [name for name in get_args(Language) if name != "en"]
 SOURCE = TEMPLATES.parents[2]
 
@@ -112,3 +120,101 @@ def test_translations_have_the_values_and_symbols_of_their_texts(name):
         assert names_in(other) == names_in(text), text
         assert Counter(symbols.findall(other)) == Counter(symbols.findall(text)), text
         assert text[-1] not in ".:" or other[-1] == text[-1], text
+
+
+RESULTS = {
+    "run": lambda: runs(HELD, PULSE, ["2DOF-S"], ground=SPRINGS),
+    "fall": lambda: runs(FRAME, rf.ricker_pulse(9.0, 1.6), ["2DOF-S", "MDOF-C"]),
+    "set": lambda: rf.simulate_set(FRAME, [rf.one_sine_pulse(3.0, period) for period in (0.5, 0.6, 0.7)], "2DOF-S"),
+    "comparison": lambda: rf.compare({"a": FRAME, "b": HELD}, [PULSE, rf.one_sine_pulse(3.0, 0.6)]),
+}
+
+
+def values_in(page):
+    return re.findall(r'data-of="(\w+)" data-value="([^"]*)"', page)
+
+
+@pytest.mark.parametrize("kind", RESULTS)
+def test_a_report_has_no_english_text_left_and_the_same_values(kind, tmp_path):
+    result = RESULTS[kind]()
+    in_english = rf.write_report(result, tmp_path / "en.html", date="2030").read_text("utf-8")
+    assert '<html lang="en">' in in_english
+    for name in OTHERS if kind == "run" else ["de"]:
+        page = rf.write_report(result, tmp_path / f"{name}.html", date="2030", language=name).read_text("utf-8")
+        assert f'<html lang="{name}">' in page
+        assert values_in(page) == values_in(in_english)
+        shown = re.sub(r"<style.*?</style>|<path[^>]*>|</?su[bp]>", "", page, flags=re.DOTALL)
+        words = {text for text, other in catalogue(name).items() if len(text.split()) > 2 and text != other}
+        left = [text for text in words if re.sub(r"\b_|\^", "", html.escape(text)) in shown]
+        assert left == []
+        assert not re.search(r'data-value="[^"]*">[^<]*\d\.\d', shown)
+
+
+def test_a_block_ends_with_the_language_around_it():
+    assert chosen_language() == ("en", ".")
+    with use_language("de"):
+        assert (translated("Largest values"), chosen_language()) == ("Größtwerte", ("de", ","))
+        with use_language("en"):
+            assert (translated("Largest values"), chosen_language()[1]) == ("Largest values", ".")
+        with use_language(None, "."):
+            assert chosen_language() == ("de", ".")
+        assert translated("a name of {a user}") == "a name of {a user}"
+    assert chosen_language() == ("en", ".")
+
+
+def test_the_decimal_sign_may_be_chosen(tmp_path):
+    (run,) = runs(FRAME, PULSE, ["2DOF-S"])
+    page = rf.write_report(run, tmp_path / "r.html", language="de", decimal=".").read_text("utf-8")
+    assert "Größtwerte" in page
+    assert re.search(r">\d+\.\d+<", page)
+    assert not re.search(r">\d+,\d+<", page)
+
+
+def labels_of(axes):
+    axes.figure.draw_without_rendering()
+    return [text.get_text() for text in axes.get_yticklabels()]
+
+
+def test_figures_follow_the_language_the_units_and_the_sign():
+    (run,) = runs(HELD, PULSE, ["2DOF-S"])
+    usual = rf.plot_history(run, panels=["rotation", "base_moment"])
+    with rf.figure_style(units="kip-in", language="fr"):
+        figure = rf.plot_history(run, panels=["rotation", "base_moment"])
+        loops = rf.plot_loops(run)
+    rotation, moment = figure.axes
+    assert (rotation.get_ylabel(), moment.get_ylabel()) == ("θ [rad]", "$M_b$ [kip in]")
+    assert moment.get_xlabel() == "temps [s]"
+    inches = constants.lbf * constants.inch
+    drawn, before = (axes.get_lines()[0].get_ydata() for axes in (moment, usual.axes[1]))
+    assert usual.axes[1].get_ylabel() == "$M_b$ [MN m]"
+    np.testing.assert_allclose(drawn * 1e3 * inches, before * 1e6, rtol=1e-12)
+    assert any("," in text for text in labels_of(rotation))
+    assert not any("." in text for axes in figure.axes for text in labels_of(axes))
+    assert [axes.get_xlabel() for axes in loops.axes[1:]] == ["δ [in]"] * (len(loops.axes) - 1)
+    assert not any("," in text for text in labels_of(usual.axes[0]))
+
+
+@pytest.mark.parametrize(("option", "value"), [("language", "la"), ("units", "kips"), ("decimal", ";")])
+def test_unknown_styles_are_refused(option, value):
+    with pytest.raises(rf.InputError, match=option) as caught, rf.figure_style(**{option: value}):
+        pass
+    assert caught.value.field == option
+
+
+def test_commands_write_reports_in_a_language(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    pier = str(EXAMPLES / "bridge_pier.toml")
+    commands = {
+        "run": ["run", pier, "el-centro-1940", "--model", "2DOF-S", "--report", "run.html"],
+        "compare": ["compare", pier, str(EXAMPLES / "restrained_pier.toml"), "el-centro-1940", "--out", "compare.html"],
+        "check": [*("check", pier, "el-centro-1940", "--report", "check.html")],
+    }
+    for name, words in commands.items():
+        done = CliRunner().invoke(app, [*words, "--language", "it"])
+        assert done.exit_code == 0, done.output
+        page = (tmp_path / f"{name}.html").read_text("utf-8")
+        assert '<html lang="it">' in page
+        assert "Legge d&#39;urto" in page
+    refused = CliRunner().invoke(app, ["run", pier, "el-centro-1940", "--language", "it"])
+    assert refused.exit_code == 2
+    assert "--language" in refused.output

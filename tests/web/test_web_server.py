@@ -1,6 +1,7 @@
 """The server: its command, requests and answers, and what it withstands."""
 
 import asyncio
+import io
 import json
 import math
 import signal
@@ -8,7 +9,6 @@ import socket
 import subprocess
 import sys
 import time
-import tomllib
 import urllib.parse
 import urllib.request
 from collections.abc import Iterator
@@ -196,7 +196,6 @@ def test_energies_that_take_long_are_left_out(client) -> None:
     answer = client.ask("/api/response", state)
     assert answer["models"][0]["peaks"]["n_impacts"] >= 0
     assert answer["energy"]["note"].startswith("The energy is not computed here for so many or such fast modes")
-    assert "is not computed here" in client.made("energy", state)["errors"]["energy"]
 
 
 def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
@@ -211,7 +210,8 @@ def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
         (model,) = run["models"]
         assert model["label"] == main
         assert model["peaks"]["max_rotation"] == expected.max_rotation
-        assert run["fixed_base_moment"] == fixed.max_base_moment  # on rigid ground
+        assert run["fixed_base_moment"] == pytest.approx(fixed.max_base_moment, rel=1e-9)  # on rigid ground
+        assert run["fixed_top_displacement"] == pytest.approx(fixed.max_total_top_displacement, rel=1e-9)
         assert np.abs(client.unpack(model["rotation"])).max() == pytest.approx(expected.max_rotation, rel=0.01)
     missing = client.ask("/api/structure", client.state(record={"source": "upload", "upload": "0" * 64}))
     assert missing["adequacy"]
@@ -333,19 +333,10 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
 def test_every_download_is_what_it_says(client) -> None:
     state = client.state(models=["2DOF-S", "fixed"])
     response = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", free_vibration=5.0)
-    for what in ("figure", "energy", "modes"):
-        assert b"<svg" in client.download(f"/api/file/{what}", state)[1]
-    import io
-
-    peaks = pd.read_csv(io.BytesIO(client.download("/api/file/peaks", state)[1]))
-    assert peaks["max_rotation"][0] == response.max_rotation
+    assert b"<svg" in client.download("/api/file/figure", state)[1]
     histories = pd.read_csv(io.BytesIO(client.download("/api/file/histories", state)[1]))
     mine = histories[histories["model"] == "2DOF-S"]
     assert mine["rotation (rad)"].to_numpy() == pytest.approx(response.rotation, rel=1e-8, abs=1e-300)
-    _, structure = client.download("/api/file/structure", state)
-    assert tomllib.loads(structure.decode())["frame"]["stiffness_ratio"] == math.inf
-    block = client.state(structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}}, models=["rigid"])
-    assert "no figure of them" in client.made("modes", block)["errors"]["structure"]
 
 
 def test_a_port_that_is_taken_or_absurd_is_told() -> None:

@@ -255,6 +255,7 @@ def test_an_old_link_still_opens() -> None:
     content |= {"units": "kN", "limits": {}, "record_set": state.record_set.model_dump()}
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
+    content |= {"alternatives": [], "head": {}}
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert as_json_value(state.model_dump(exclude_none=True)) == content

@@ -28,7 +28,16 @@ from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._language import Language, chosen_language, use_language
 from rockflex._number_format import unit_with_prefix
 from rockflex._shown import shown
-from rockflex._units import QUANTITIES, Decimal, SystemName, Unit, UnitSystem, checked_unit_system, with_decimal_commas
+from rockflex._units import (
+    QUANTITIES,
+    Decimal,
+    SystemName,
+    Unit,
+    UnitSystem,
+    checked_unit_system,
+    named_unit,
+    with_decimal_commas,
+)
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
@@ -204,12 +213,14 @@ def chosen_units() -> UnitSystem | None:
     return _UNITS.get()
 
 
-def axis_unit(quantity: str, largest: float) -> Unit:
-    """Return the unit of an axis: in the chosen system, or in SI with a prefix that suits the largest value."""
-    chosen, usual = _UNITS.get(), QUANTITIES[quantity][2]
+def axis_unit(quantity: str, largest: float = 0.0, usual: str = "") -> Unit:
+    """Return the unit of an axis: of the chosen system, or the usual one, or of SI with a prefix for the largest."""
+    chosen, base = _UNITS.get(), QUANTITIES[quantity][2]
     if chosen is not None:
         return chosen.of(quantity, largest=largest)
-    return Unit(*unit_with_prefix(largest, usual)) if usual[0] in "NJP" else Unit(1.0, usual)
+    if usual:
+        return named_unit(usual)
+    return Unit(*unit_with_prefix(largest, base)) if base[0] in "NJP" else Unit(1.0, base)
 
 
 @contextmanager

@@ -741,7 +741,7 @@ def tributary_shares(springs: Springs, p: RockingProperties) -> Array:
 
 
 def _draw_base_edges(axes: Axes, history: History) -> None:
-    unit = figures.axis_unit("displacement", 0.0)
+    unit = figures.axis_unit("displacement", usual="mm")
     names = (translated("left edge"), translated("right edge"))
     for values, name, color in zip(history.edge_uplift.T / unit.size, names, (BLUE, RED), strict=True):
         axes.plot(history.time, values, color=color, linewidth=0.9, label=name)
@@ -757,7 +757,7 @@ def _draw_soil_pressure(figure: Figure, axes: Axes, history: History, springs: S
     pushes = history.spring_force if area is None else history.soil_pressure
     name = translated("force" if area is None else "pressure")
     factor, unit = figures.axis_unit("force" if area is None else "stress", float(pushes.max()))
-    across, length = figures.axis_unit("length", 0.0)
+    across, length = figures.axis_unit("length")
     places = springs.positions / across
     if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _SPRING_COLORS, strict=False):

@@ -149,7 +149,7 @@ def _element_name(elements: Sequence[modal.BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
     words = element.words if isinstance(element, modal.ElementLaw) else _ELEMENT_NAMES[type(element)]
-    where = element.where_in(figures.axis_unit("length", 0.0))
+    where = element.where_in(figures.axis_unit("length"))
     return f"{place + 1} {translated(words)}, {where}"
 
 
@@ -226,7 +226,7 @@ def plot_loops(
 def _draw_base_loop(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
     factor, unit = figures.axis_unit("moment", max(map(abs, (*moment, 0.0))))
-    turn = figures.axis_unit("rotation", 0.0)
+    turn = figures.axis_unit("rotation")
     rotation = loops.rotation / turn.size
     axes.plot(rotation, moment / factor, color=BLACK, linewidth=1.4, label=translated("total"), zorder=3.0)
     if loops.elements or loops.springs is not None:
@@ -242,7 +242,7 @@ def _draw_base_loop(axes: Axes, loops: BaseLoops) -> None:
 
 def _draw_edge_loops(axes: Axes, loops: BaseLoops) -> None:
     edges = cast("Array", loops.edges)
-    unit, turn = figures.axis_unit("displacement", 0.0), figures.axis_unit("rotation", 0.0)
+    unit, turn = figures.axis_unit("displacement", usual="mm"), figures.axis_unit("rotation")
     names = (translated("left"), translated("right"))
     axes.axhline(0.0, color=GRAY, linewidth=0.6, label="_level")
     for edge, style, name in zip(edges.T / unit.size, ("-", (0, (4, 2))), names, strict=True):
@@ -256,7 +256,7 @@ def _draw_edge_loops(axes: Axes, loops: BaseLoops) -> None:
 def _draw_element_loop(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
     factor, unit = figures.axis_unit("force", max(map(abs, (*force, 0.0))))
-    across = figures.axis_unit("displacement", 0.0)
+    across = figures.axis_unit("displacement")
     axes.plot(
         loops.elongation[:, place] / across.size, force / factor, color=_COLORS[place % len(_COLORS)], linewidth=1.1
     )
@@ -456,7 +456,7 @@ def plot_moment_rotation(
     rotation = _LIMIT * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
     factor, unit = figures.axis_unit("moment", largest)
-    turn = figures.axis_unit("rotation", 0.0)
+    turn = figures.axis_unit("rotation")
     with figures.applied_figure_style(size=size):
         columns = 1 if figures.is_narrow() else min(len(curves), _RUNS_PER_ROW)
         rows = math.ceil(len(curves) / columns)

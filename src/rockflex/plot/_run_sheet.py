@@ -19,6 +19,7 @@ from rockflex.response import Response
 _MM = 1.0 / 25.4  # inches
 _MARGIN = 1.08
 _MIN_PANEL_MM = 26.0  # mm of height that a panel needs
+_ONE_LINE_MM = 40.0  # mm of height in which every label has room in one line
 _MIN_PANELS = 3  # panels in any case
 _MAX_LAW_POINTS = 500  # points of a line that is a path, not a law
 
@@ -53,8 +54,10 @@ def draw_run_sheet(
             handles, _ = histories.draw_curves(axes, quantity, curves)
             _label_inside_panel(axes, mark)
             unit, _ = histories.quantity_axis_scale(quantity, curves)
-            words = quantity.label if height / len(quantities) > _MIN_PANEL_MM else translated(quantity.symbol)
-            axes.set_ylabel(unit.heading(words), fontsize=figures.scaled_font_size(8.0))
+            room = height / len(quantities)
+            label = unit.heading(quantity.label if room > _MIN_PANEL_MM else translated(quantity.symbol))
+            lines = label.replace(" [", "\n[") if room < _ONE_LINE_MM else label
+            axes.set_ylabel(lines, fontsize=figures.scaled_font_size(8.0))
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
@@ -69,7 +72,7 @@ def draw_run_sheet(
 
 def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
     """Draw a ground acceleration, given in m/s², over the time in s, `width` by `height` mm."""
-    unit = figures.axis_unit("acceleration", 0.0)
+    unit = figures.axis_unit("acceleration")
     shaking = acceleration / unit.size
     largest = float(np.max(np.abs(shaking))) or 1.0
     with figures.applied_figure_style():
@@ -112,7 +115,7 @@ def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: s
     unit, limit = histories.quantity_axis_scale(moment, curves)
     largest = max(largest_base_moment_on_axes(curves[0]), limit * unit.size / _MARGIN)
     factor, unit = figures.axis_unit("moment", largest)
-    turn = figures.axis_unit("rotation", 0.0)
+    turn = figures.axis_unit("rotation")
     for curve in curves:
         until_fall = curve.before_fall
         axes.plot(

@@ -25,6 +25,7 @@ from rockflex.report.run import checked_report_path
 from rockflex.response import CheckLimits, Comparison, RecordSet, Rule, check, checked_rule
 from rockflex.study import (
     MAX_ALTERNATIVES,
+    WORK_LIMIT,
     Motions,
     RockingStructure,
     checked_motions,
@@ -240,8 +241,10 @@ class Project(HtmlTable, Value):
             workers=workers,
         )
 
-    def comparison(self, workers: SupportsIndex | None = None) -> Comparison:
+    def comparison(self, workers: SupportsIndex | None = None, work_limit: float | None = WORK_LIMIT) -> Comparison:
         """Return what `compare` returns for all structures, of which there must be two at least.
+
+        `workers` and `work_limit` are as there.
 
         Raises
         ------
@@ -259,6 +262,7 @@ class Project(HtmlTable, Value):
             impact=self.impact,
             ground=self.ground,
             workers=workers,
+            work_limit=work_limit,
         )
 
     def run(self, workers: SupportsIndex | None = None) -> "Project":

@@ -19,7 +19,10 @@ from rockflex.models import BoucWen, Restitution, SidedRestitution, VVELComplete
 from rockflex.motion import GroundMotion, RecordInfo, record_csv
 from rockflex.response import CheckLimits
 from rockflex.structure.file import (
+    CLASS,
     TomlTable,
+    arguments_in_table,
+    entry_of_object_table,
     object_from_table,
     object_table,
     parse_toml_table,
@@ -28,8 +31,9 @@ from rockflex.structure.file import (
 
 FORMAT = "rockflex-project-1"
 DOCUMENT = "project.toml"
-MAX_TOML_BYTES = 50_000_000
+PAGE = "page.json"  # the state of the page in the browser, in projects that it saved; only the page reads it
 MAX_ROWS = 100_000  # of a table of results
+MAX_TABLE_BYTES = 500_000_000  # of it, unpacked
 TABLES: dict[str, dict[str, type]] = {
     "runs": {"structure": str, "motion": str, "status": str},
     "statistics": {"structure": str, "demand": str, "design": float, "reason": str},
@@ -41,6 +45,7 @@ _OPTIONS = ("bouc_wen", "impact", "ground")  # objects of each structure
 _CLASSES: dict[str, type] = {
     each.__name__: each for each in (BoucWen, CheckLimits, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
 }
+_LAW_NAMES = {"VVELSimplified": "simplified", "VVELComplete": "complete", "Restitution": "restitution"}
 _TABLE = SchemaKey("a table", form=PLAIN)
 _NAME = SchemaKey("a name, in quotes", form=PLAIN)
 _FILE = SchemaKey("the name of a file in the project", form=PLAIN)
@@ -137,8 +142,8 @@ def input_checksum(project: Any) -> str:
     return hashlib.sha256(b"\n".join([_toml(document), *files.values()])).hexdigest()
 
 
-def project_members(project: Any) -> dict[str, bytes]:
-    """Return the files of a project by name.
+def project_members(project: Any, page: bytes | None = None) -> dict[str, bytes]:
+    """Return the files of a project by name, with the state of the page if that saves it.
 
     Raises
     ------
@@ -153,20 +158,20 @@ def project_members(project: Any) -> dict[str, bytes]:
             content = io.BytesIO()
             getattr(results, name).to_parquet(content, engine="pyarrow", index=False)
             files[_result_file(name)] = content.getvalue()
-    return {DOCUMENT: _toml(document), **files}
+    return {DOCUMENT: _toml(document), **files, **({} if page is None else {PAGE: page})}
 
 
 def _result_file(name: str) -> str:
     return f"results/{name}.parquet"
 
 
-def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
-    """Return the arguments of `Project` in its files; `results` as those of `ProjectResults`, or None.
+def project_document(members: Mapping[str, bytes]) -> ProjectDocument:
+    """Return project.toml, all of whose files are there, and no others; structures and records are not yet read.
 
     Raises
     ------
     InputError
-        If a file is missing, wrong or not one of a project, or its format is another one.
+        If it is missing or wrong, or its format is another one.
     """
     content = _toml_of(members, DOCUMENT)
     if content.get("format") != FORMAT:
@@ -180,13 +185,25 @@ def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
     problems = [
         *(f"{shown(name)} is listed, but not in the archive" for name in listed if name not in members),
         *(f"{shown(name)} is listed twice" for name, n in Counter(listed).items() if n > 1),
-        *(f"{shown(name)} is in the archive, but not listed" for name in members if name not in listed),
+        *(f"{shown(name)} is in the archive, but not listed" for name in members if name not in (*listed, PAGE)),
     ]
     if problems:
         raise InputError(f"{DOCUMENT}: {problems[0]}. Give a file that Project.save wrote.")
     names = [each.name for each in document.structures]
     if len(set(names)) < len(names):
         raise InputError(f"{DOCUMENT}: two structures have the same name. Name each differently.")
+    return document
+
+
+def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the arguments of `Project` in its files; `results` as those of `ProjectResults`, or None.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, wrong or not one of a project, or its format is another one.
+    """
+    document = project_document(members)
 
     def option(row: StructureRow, name: str) -> Any:
         return object_from_table(getattr(row, name), f"{DOCUMENT}, {name} of {shown(row.name)}", _CLASSES)
@@ -199,7 +216,7 @@ def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
         "structures": {
             row.name: structure_from_table(_toml_of(members, row.file), row.file) for row in document.structures
         },
-        "motions": [_motion(members, row) for row in document.records],
+        "motions": [record_of_member(members, row) for row in document.records],
         "model": {row.name: row.model for row in document.structures},
         **options,
         "rule": document.rule,
@@ -211,16 +228,36 @@ def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
     }
 
 
+def structure_keys(members: Mapping[str, bytes], row: StructureRow) -> dict[str, Any]:
+    """Return a structure and its options as the keys of forms and files have them; nothing is built or checked.
+
+    Raises
+    ------
+    InputError
+        As `entry_of_object_table`.
+    """
+    structure = {"name": row.name, **entry_of_object_table(_toml_of(members, row.file), row.file)}
+    options = {name: getattr(row, name) for name in ("bouc_wen", "ground") if getattr(row, name) is not None}
+    found: dict[str, Any] = {"structure": structure, **arguments_in_table(options)}
+    springs = found.get("ground", {}).get("springs")
+    if isinstance(springs, dict):
+        springs.pop("area", None)  # which only checks of pressures know
+    if (law := row.impact) is not None:
+        found["impact"] = _LAW_NAMES.get(str(law.get(CLASS)), law)
+        found |= {"restitution": law["e"]} if "e" in law else {}
+    return found
+
+
 def _toml_of(members: Mapping[str, bytes], name: str) -> dict[str, Any]:
+    """Return the content of a file of TOML."""
     content = members.get(name)
     if content is None:
         raise InputError(f"{name} is not in the archive. Give a file that Project.save wrote.")
-    if len(content) > MAX_TOML_BYTES:
-        raise InputError(f"{name} has {len(content) / 1e6:.0f} MB, more than {MAX_TOML_BYTES / 1e6:.0f} MB.")
     return _read(name, "TOML", lambda: tomllib.loads(content.decode()))
 
 
-def _motion(members: Mapping[str, bytes], row: RecordRow) -> GroundMotion:
+def record_of_member(members: Mapping[str, bytes], row: RecordRow) -> GroundMotion:
+    """Return the record of a row, scaled as it acts."""
     text = members[row.file]
     values = _read(row.file, "CSV with a line of labels", lambda: _columns(text.decode()))
     labels = ("time (s)", "acceleration (m/s2)", "vertical (m/s2)")
@@ -259,9 +296,12 @@ def _result_table(members: Mapping[str, bytes], file: str, needed: Mapping[str, 
     opened = _read(file, "Parquet", lambda: ParquetFile(io.BytesIO(content)))
     found = {each.name: each.type for each in opened.schema_arrow}
     lacking = [name for name, kind in needed.items() if name not in found or not is_kind[kind](found[name])]
-    if lacking or opened.metadata.num_rows > MAX_ROWS:
+    size = sum(opened.metadata.row_group(k).total_byte_size for k in range(opened.num_row_groups))
+    if lacking or opened.metadata.num_rows > MAX_ROWS or size > MAX_TABLE_BYTES:
         kinds = ", ".join(f"{name} ({kind.__name__})" for name, kind in needed.items())
-        raise InputError(f"{file} must have the columns {kinds}, ... and at most {MAX_ROWS} rows.")
+        raise InputError(
+            f"{file} must have the columns {kinds}, ... and at most {MAX_ROWS} rows and {MAX_TABLE_BYTES / 1e6:g} MB."
+        )
     return _read(file, "Parquet", lambda: opened.read().to_pandas())
 
 

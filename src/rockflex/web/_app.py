@@ -22,13 +22,17 @@ from starlette.staticfiles import StaticFiles
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
 from rockflex._units import QUANTITIES, SystemName, UnitSystem
+from rockflex.report.run._report_files import found_browser
 from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.study import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
+from rockflex.web._alternatives import alternatives_view
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
+from rockflex.web._projects import state_of_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
@@ -148,6 +152,12 @@ class PageServer:
                 return {"folder": token, **folder.report}
 
             return JSONResponse(await self.answer(work, MAX_FOLDERS_READ))
+
+    async def project(self, request: Request) -> Response:
+        """The state in a project's file."""
+        async with self._folders_received:
+            body = await uploaded_file_bytes(request, limits.MAX_PROJECT_BYTES, limits.MAX_PROJECT_BYTES)
+            return JSONResponse(await self.answer(lambda: state_of_project(body, self.uploads), MAX_FOLDERS_READ))
 
     async def folder_report(self, request: Request) -> Response:
         """Report on a folder that the server has."""
@@ -332,6 +342,8 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/structure", view(structure), methods=["POST"]),
         Route("/api/record", view(lambda state, _: record_view(state, uploads)), methods=["POST"]),
         Route("/api/response", view(response), methods=["POST"]),
+        Route("/api/alternatives", view(lambda state, _: alternatives_view(state, uploads)), methods=["POST"]),
+        Route("/api/project", server.project, methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
         Route("/api/folder", server.folder, methods=["POST"]),
         Route("/api/folder/{token}", server.folder_report),
@@ -372,6 +384,8 @@ def _answer_about_page() -> dict[str, Any]:
         "duration": limits.MAX_DURATION,
         "models": limits.MAX_MODELS,
         "elements": limits.MAX_ELEMENTS,
+        "alternatives": MAX_ALTERNATIVES,
+        "project": limits.MAX_PROJECT_BYTES,
     }
     first = PageState.model_validate(FIRST)
     return forms_of_structures() | {
@@ -384,6 +398,7 @@ def _answer_about_page() -> dict[str, Any]:
             name: {quantity: UnitSystem(name).of(quantity)._asdict() for quantity in QUANTITIES}
             for name in get_args(SystemName)
         },
+        "pdf": found_browser() is not None,
         "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 

@@ -1,7 +1,5 @@
 """The files of the page: figures, tables, records, studies, programs, a report and an animation."""
 
-import csv
-import io
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,16 +11,17 @@ from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
 from rockflex.report.run import run_report_as_html
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
+from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._folders import records_as_zip
 from rockflex.web._jobs import RunsJob
+from rockflex.web._projects import project_file
 from rockflex.web._record_sets import RECORD_SET_PAGE
 from rockflex.web._refusal import Refusal, errors_as_refusals
-from rockflex.web._response import check_work_of_energy, is_long_run_report, simulate_state_models
+from rockflex.web._response import is_long_run_report, simulate_state_models
 from rockflex.web._script import response_script, selection_script
 from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
 from rockflex.web._state import PageState
-from rockflex.web._structure import build_page_structure
 from rockflex.web._studies import CLOUD_PAGE, DESIGN_PAGE, StudyPage
 from rockflex.web._uploads import UploadedRecords, clean_upload_name
 
@@ -49,7 +48,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             structure=built.structure,
             motion=motion,
             units=state.units,
-            title=f"{name} under {motion.name or 'a ground motion'}{times}",
+            **{"title": f"{name} under {motion.name or 'a ground motion'}{times}"} | state.head_texts(),
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
             limits=state.check_limits(),
         )
@@ -95,6 +94,8 @@ MEDIA_TYPES = {
     ".svg": "image/svg+xml",
     ".gif": "image/gif",
     ".html": "text/html",
+    ".pdf": "application/pdf",
+    ".rockflex": "application/zip",
     ".csv": "text/csv",
     ".toml": "application/toml",
     ".py": "text/x-python",
@@ -133,33 +134,6 @@ def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[st
     from rockflex.plot import figure_as_svg, plot_history
 
     return "response.svg", figure_as_svg(plot_history(simulate_state_models(state, uploads)[2]))
-
-
-def _energy_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_energy
-
-    _, motion, found = simulate_state_models(state, uploads)
-    check_work_of_energy(found[0], motion, state)
-    return "energy.svg", figure_as_svg(plot_energy(found[0]))
-
-
-def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_mode_shapes
-
-    built = build_page_structure(state.structure)
-    if built.modes is None:
-        raise Refusal({"structure": "the shapes of the modes are not known, so there is no figure of them."})
-    return "modes.svg", figure_as_svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
-
-
-def _peaks_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    _, motion, found = simulate_state_models(state, uploads)
-    rows = [response.peaks() for response in found]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["motion", "scale", *rows[0]])
-    writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
-    return "peaks.csv", text.getvalue()
 
 
 def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -266,14 +240,13 @@ def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tu
 
 _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
     "figure": _history_figure_file,
-    "energy": _energy_figure_file,
     "report": run_report_file,
-    "modes": _mode_shapes_figure_file,
-    "peaks": _peaks_table_file,
+    "comparison": lambda state, uploads: comparison_report_file(state, uploads, ".html"),
+    "comparison-pdf": lambda state, uploads: comparison_report_file(state, uploads, ".pdf"),
+    "project": project_file,
     "histories": _histories_table_file,
     "record": _record_csv_file,
     "records": lambda state, uploads: (f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))),
-    "structure": lambda state, _: ("structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))),
     "python": _response_python_file,
     "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
     "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),

@@ -151,7 +151,7 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
         with suppress(Refusal):
             fixed = run("fixed", main=False)
             moment, top = fixed.max_base_moment, fixed.max_total_top_displacement
-    curves = _response_curves(built, response, None, SKETCH_POINTS // 2 if quick else SKETCH_POINTS, CURVES[:2])
+    curves = response_curves(built, response, None, SKETCH_POINTS // 2 if quick else SKETCH_POINTS, CURVES[:2])
     return as_json_value(
         {
             **structure_outline_view(state.structure, built),
@@ -175,7 +175,7 @@ def response_view(
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
     drawn = chosen_element(element, p)
-    energy, curves = _energy_view(motion, main, state), [_response_curves(built, response, drawn) for response in found]
+    energy, curves = _energy_view(motion, main, state), [response_curves(built, response, drawn) for response in found]
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
@@ -205,13 +205,14 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _response_curves(
+def response_curves(
     built: BuiltStructure,
     response: Response,
     element: int | None,
     points: int = MAX_HISTORY_POINTS,
     names: Sequence[str] = CURVES,
 ) -> dict[str, Any]:
+    """Return a response as the page draws it, with its peaks and the loop of one element."""
     history = response.history
     assert history is not None  # asked for in `simulate_state_models`
     known = history.model.properties.top_height is not None

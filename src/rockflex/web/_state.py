@@ -2,7 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -16,7 +17,7 @@ from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
 from rockflex.response import CheckLimits
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
-from rockflex.study import RunOptions, yielding_model_labels
+from rockflex.study import MAX_ALTERNATIVES, RunOptions, yielding_model_labels
 from rockflex.study._ground_tables import GroundTable
 from rockflex.study.spec import BoucWenTable, RunOptionKeys
 from rockflex.web._limits import (
@@ -165,6 +166,7 @@ Checksum = Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")]
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
+MAX_FREE_VIBRATION = 60.0  # s
 MAX_STATE_VALUES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
 MAX_MESSAGES = 50  # messages in one answer
 
@@ -256,6 +258,14 @@ class RecordSetChoice(TomlTable):
 LimitOfCheck = Annotated[str, check_of_known_names(lambda: [each.name for each in fields(CheckLimits)])]
 
 
+class Alternative(RunOptionKeys):
+    """A structure that was kept under a name, with its models and their options."""
+
+    name: Annotated[Name, Field(min_length=1, max_length=40, description="a name of at most 40 letters")]
+    structure: StructureEntry = Field(description="a table")
+    models: Labels
+
+
 class PageState(RunOptionKeys):
     """The state of the whole page."""
 
@@ -268,11 +278,17 @@ class PageState(RunOptionKeys):
     scale: Scale = 1.0
     models: Labels = Field(["MDOF-S", "2DOF-S", "fixed"], description="a list of one to four models")
     free_vibration: float = Field(
-        5.0, ge=0.0, le=60.0, description="the free vibration after the record in s, from 0 to 60"
+        5.0, ge=0.0, le=MAX_FREE_VIBRATION, description="the free vibration after the record in s, from 0 to 60"
     )
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+    alternatives: list[Alternative] = Field(
+        [], max_length=MAX_ALTERNATIVES, description=f"a list of at most {MAX_ALTERNATIVES} tables"
+    )
+    head: dict[Literal["title", "project", "author", "checker"], Name] = Field(
+        default_factory=dict, description="a table of texts of at most 120 letters"
+    )
 
     record_set: RecordSetChoice = Field(
         default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
@@ -280,6 +296,16 @@ class PageState(RunOptionKeys):
     limits: dict[LimitOfCheck, Any] = Field(
         default_factory=dict, description="a table of the arguments of rockflex.CheckLimits"
     )
+
+    def head_texts(self) -> dict[str, str]:
+        """Return the texts of the head of reports that are given."""
+        return {name: text for name, text in self.head.items() if text}
+
+    def kept_state(self, alternative: Alternative) -> "PageState":
+        """Return the state with a kept alternative in the place of its structure, models and options."""
+        own = {name: getattr(alternative, name) for name in Alternative.model_fields if name != "name"}
+        usual = {"cloud": CloudChoice.model_validate({}), "design": DesignChoice.model_validate({})}
+        return self.model_copy(update={**own, **usual, "alternatives": []})
 
     @property
     def model_of_set(self) -> str:
@@ -330,6 +356,26 @@ def parse_page_state(content: Any) -> PageState:
         raise Refusal(dict([*(ranges | _field_error_messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
+    _check_state(state)
+    names = [each.name for each in state.alternatives]
+    if len(set(names)) < len(names):
+        raise Refusal({"alternatives": "two of them have the same name. Name each differently."})
+    for each in state.alternatives:
+        with refusals_of_alternative(each.name):
+            _check_state(state.kept_state(each))
+    return state
+
+
+@contextmanager
+def refusals_of_alternative(name: str) -> Generator[None]:
+    """Name a kept alternative in refusals, which have no field of the forms then."""
+    try:
+        yield
+    except Refusal as error:
+        raise Refusal({"alternatives": f"{name}: {error}"}, error.status) from error
+
+
+def _check_state(state: PageState) -> None:
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
@@ -337,7 +383,6 @@ def parse_page_state(content: Any) -> PageState:
     check_form_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models_of_state(state)
     _check_run_options_of_state(state)
-    return state
 
 
 def _check_models_of_state(state: PageState) -> None:

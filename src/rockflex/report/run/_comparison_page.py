@@ -74,8 +74,8 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
     report = reported_alternatives(comparison, units)
     record = _report_tables.reported_record(report)
     total, several = comparison.n_records, comparison.n_records > 1
-    under = translated("{n} records", n=total) if several else record.name
-    usual = _report_tables.title_text(", ".join(comparison.names), under)
+    names, tables = ", ".join(comparison.names), _report_tables
+    usual = tables.title_of_several_text(names, total) if several else tables.title_text(names, record.name)
     statistics = " / ".join(translated(STATISTICS[each]) for each in SHOWN)
     fell = [
         translated(

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError
-from rockflex._language import translated
+from rockflex._language import chosen_language, translated
 from rockflex._shown import shortened
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 from rockflex.report.run._sheet import Drawing, ReportPage
@@ -23,6 +23,12 @@ _MARGIN, _WIDTH = 12.0, 186.0  # of a sheet of A4 in mm
 _SUBSCRIPT = re.compile(r"(?<=[^\W\d_])(\*?)_([\w*–]+)|\^(−?\d+)")
 
 
+def found_browser() -> str | None:
+    """Return the program of a browser of the Chromium family; None if there is none."""
+    named = os.environ.get(BROWSER_VARIABLE)
+    return shutil.which(named) if named else next(filter(None, map(shutil.which, BROWSERS)), None)
+
+
 def chromium() -> str:
     """Return the program of a browser of the Chromium family.
 
@@ -31,8 +37,7 @@ def chromium() -> str:
     InputError
         If there is none.
     """
-    named = os.environ.get(BROWSER_VARIABLE)
-    found = shutil.which(named) if named else next(filter(None, map(shutil.which, BROWSERS)), None)
+    found, named = found_browser(), os.environ.get(BROWSER_VARIABLE)
     if found is None:
         said = f"{BROWSER_VARIABLE} is {named}, which is no program" if named else f"none of {', '.join(BROWSERS)} is"
         raise InputError(
@@ -107,6 +112,7 @@ def report_as_word(page: ReportPage, drawings: Mapping[str, tuple[str, bytes]]) 
     usual.paragraph_format.space_after = docx.shared.Pt(3)
     properties = document.core_properties
     properties.title, properties.author, properties.comments = page.title, page.texts.author, ""
+    properties.language = chosen_language()[0]
 
     document.add_heading(page.title, 1)
     _add_lines(document, [*page.texts.heads, (translated("Date"), page.texts.date)])

@@ -151,6 +151,13 @@ def title_text(what: str, record: str) -> str:
     return translated("{structure} under {record}", structure=what, record=record or translated("a ground motion"))
 
 
+def title_of_several_text(what: str, n: int) -> str:
+    """Return the title of a report on some records without one of its own."""
+    return translated(
+        "{structure} under {n} record" if n == 1 else "{structure} under {n} records", structure=what, n=n
+    )
+
+
 def structure_kind_text(structure: Any) -> str:
     """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
     if isinstance(structure, RockingProperties):

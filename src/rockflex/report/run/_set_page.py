@@ -8,7 +8,14 @@ from rockflex._language import translated
 from rockflex._shown import shortened
 from rockflex._units import UnitSystem
 from rockflex.report.run import _report_tables
-from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, title_text, value_cell
+from rockflex.report.run._report_tables import (
+    DAGGER,
+    STATUS,
+    ReportCell,
+    ReportTable,
+    title_of_several_text,
+    value_cell,
+)
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
@@ -66,7 +73,7 @@ def set_page(
     records = translated("{n} record" if n == 1 else "{n} records", n=n)
     checks, elements = check(found, limits), _report_tables.elements_text(found.properties, units)
     page = SetPage(
-        title=shortened(texts.title or title_text(kind, records), MAX_LETTERS["title"]),
+        title=shortened(texts.title or title_of_several_text(kind, n), MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
         facts=_report_tables.structure_facts(found.properties, units),

@@ -1,6 +1,12 @@
 """Structures in TOML files."""
 
-from rockflex.structure.file._object_tables import CLASS, object_from_table, object_table, structure_from_table
+from rockflex.structure.file._object_tables import (
+    CLASS,
+    arguments_in_table,
+    object_from_table,
+    object_table,
+    structure_from_table,
+)
 from rockflex.structure.file._structure_entry import (
     ELEMENTS,
     KINDS,
@@ -8,6 +14,7 @@ from rockflex.structure.file._structure_entry import (
     StructureEntry,
     TendonTable,
     build_structure_in_file,
+    entry_of_object_table,
     read_structure,
     read_toml_file,
 )
@@ -36,7 +43,9 @@ __all__ = [
     "StructureTable",
     "TendonTable",
     "TomlTable",
+    "arguments_in_table",
     "build_structure_in_file",
+    "entry_of_object_table",
     "first_table_in_annotation",
     "members_of_annotation",
     "object_from_table",

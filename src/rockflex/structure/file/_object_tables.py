@@ -103,6 +103,15 @@ def object_from_table(table: Any, place: str, classes: Mapping[str, type] | None
         raise InputError(f"{place}: {kind.__name__} cannot be made: {shortened(str(error))}.") from error
 
 
+def arguments_in_table(table: Any) -> Any:
+    """Return a table and those in it without the names of their classes."""
+    if isinstance(table, list):
+        return [arguments_in_table(each) for each in cast("list[Any]", table)]
+    if not isinstance(table, dict):
+        return table
+    return {key: arguments_in_table(each) for key, each in cast("dict[str, Any]", table).items() if key != CLASS}
+
+
 def structure_from_table(table: Mapping[str, Any], place: str) -> Any:
     """Return the structure of a table with a key `class`.
 

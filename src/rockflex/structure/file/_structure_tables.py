@@ -50,7 +50,7 @@ Damping = Annotated[
 ]
 Height = Annotated[float, SchemaKey("the height above the base", "m", low=0.01, high=2000.0)]
 Modes = Annotated[int, SchemaKey("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
-_PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
+PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
 _EACH_HEIGHT = one_for_each("height in z")
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
@@ -416,7 +416,7 @@ class BeamTable(StructureTable):
         """Return the arguments with a table for each list."""
         given = super().arguments(folder)
         z = given.pop("z", None)
-        lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
+        lists = [name for name in PROFILES if isinstance(given.get(name), list)]
         if z is None and lists:
             raise InputError(
                 f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m.",

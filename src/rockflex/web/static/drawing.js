@@ -6,7 +6,10 @@ import { inUnit } from "./units.js";
 
 const COLORS = { tendon: "tendons", yielding_dissipator: "fuse", viscous_damper: "damper", friction_damper: "friction" };
 
-export const colorOf = (kind) => COLORS[kind] ?? "fuse";
+const DRAWN = { strand_tendon: "tendon", bar_fuse: "yielding_dissipator", u_plate_fuse: "yielding_dissipator" };
+
+export const colorOf = (kind) => COLORS[DRAWN[kind] ?? kind] ?? "fuse";
+export const isTendon = (kind) => colorOf(kind) === "tendons";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {
@@ -19,10 +22,8 @@ export function nameOf(about, each, place) {
 // Strokes in pixels, [across, along], of an element that reaches from the ground to `length` along.
 export function strokes(kind, length) {
   const at = (share) => share * length;
-  if (kind === "yielding_dissipator") return fuse(at);
-  if (kind === "viscous_damper") return dashpot(at);
-  if (kind === "friction_damper") return plates(at);
-  return [{ points: [[0, 0], [0, length]], width: 1.5 }];
+  const parts = { yielding_dissipator: fuse, viscous_damper: dashpot, friction_damper: plates }[DRAWN[kind] ?? kind];
+  return parts?.(at) ?? [{ points: [[0, 0], [0, length]], width: 1.5 }];
 }
 
 // A coil spring from the ground to `length` along, `half` wide to either side.

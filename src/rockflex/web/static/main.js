@@ -29,7 +29,6 @@ let early = null; // the tab chosen before the state was known
 export const app = {
   about: null,
   state: null,
-  uploads: {},
   // Change part of the state and update the page; `live` while a handle or slider still moves: browsers take few changes of
   // the address.
   change(patch, live = false) {
@@ -62,6 +61,11 @@ export const app = {
       tabOf(tab).focus();
     };
     return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, label));
+  },
+  // Open another state of the page, as a link does.
+  restore(state) {
+    location.hash = `#s=${encode(state)}`;
+    document.getElementById("main").focus();
   },
   go(tab) {
     if (!app.state) {

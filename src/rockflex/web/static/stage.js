@@ -2,7 +2,7 @@
 
 import { bracket, FONT } from "./axes.js";
 import { color, context, h } from "./dom.js";
-import { colorOf, depthOf, drawSprings, drawStance, motionOf, strokes } from "./drawing.js";
+import { colorOf, depthOf, drawSprings, drawStance, isTendon, motionOf, strokes } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
 import { unit } from "./units.js";
@@ -10,6 +10,7 @@ import { unit } from "./units.js";
 const IMPACT = 0.12; // s for which an impact is marked
 const BRACKET = 34; // px above the base to which elements reach
 const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window
+const GHOST = 0.55; // opacity
 const narrow = matchMedia("(max-width: 900px)");
 
 class Stage {
@@ -23,6 +24,7 @@ class Stage {
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
     Object.assign(this, { tall: height, height, room, held: false }); // held: the scale stays while something is dragged
     this.view = null;
+    this.ghosts = []; // other structures that move behind the first model
     this.time = 0;
     this.amplification = 1;
     new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -35,16 +37,15 @@ class Stage {
   }
 
   // The left and the right edge of the base, in metres from the axis of the masses.
-  edges() {
-    const { half_width: b, eccentricity: e } = this.view;
+  edges({ half_width: b, eccentricity: e } = this.view) {
     return [-b - e, b - e];
   }
 
   // The drawing of a model at a time, in metres from the axis of the masses.
-  frameAt(index, time, amplification) {
-    const { heights } = this.view;
-    const [left, right] = this.edges();
-    const model = this.view.models[index];
+  frameAt(index, time, amplification, view = this.view) {
+    const { heights } = view;
+    const [left, right] = this.edges(view);
+    const model = view.models[index];
     const n = heights.length;
     const [low, high, share] = bracket(model.t, time);
     const mix = (values, i = low, j = high) => values[i] + share * (values[j] - values[i]);
@@ -76,8 +77,8 @@ class Stage {
     const count = this.view.models.length;
     const cell = width / count;
     const { heights } = this.view;
-    const b = Math.max(...this.edges().map(Math.abs));
-    const top = heights[heights.length - 1];
+    const b = Math.max(...[this.view, ...this.ghosts].flatMap((view) => this.edges(view)).map(Math.abs));
+    const top = Math.max(heights.at(-1), ...this.ghosts.map((ghost) => ghost.heights.at(-1)));
     const falls = this.view.models.some((model) => model.status === "overturned" || model.fall_time !== null);
     const reach = falls ? top + 2 * b : Math.max(0.32 * top, 1.6 * b);
     const wide = cell / (2.1 * reach);
@@ -128,8 +129,9 @@ class Stage {
       g.fill();
       g.globalAlpha = 1;
     }
-    g.strokeStyle = color("structure");
     g.lineJoin = "round";
+    if (index === 0) for (const ghost of this.ghosts) this.#ghost(g, ghost, path, to);
+    g.strokeStyle = color("structure");
     this.#body(g, frame, path, to);
     g.lineWidth = 5;
     path(frame.base);
@@ -140,9 +142,20 @@ class Stage {
     g.restore();
   }
 
-  #body(g, frame, path, to) {
-    const { heights, kind } = this.view;
-    const [low, high] = this.edges();
+  #ghost(g, ghost, path, to) {
+    const frame = this.frameAt(0, this.time, this.amplification, ghost);
+    g.globalAlpha = GHOST;
+    g.strokeStyle = color(ghost.models[0].look.color);
+    this.#body(g, frame, path, to, ghost);
+    g.lineWidth = 5;
+    path(frame.base);
+    g.stroke();
+    g.globalAlpha = 1;
+  }
+
+  #body(g, frame, path, to, view = this.view) {
+    const { heights, kind } = view;
+    const [low, high] = this.edges(view);
     const top = heights[heights.length - 1];
     const stroke = (points, width) => {
       g.lineWidth = width;
@@ -166,7 +179,7 @@ class Stage {
       stroke(whole(right), 2.4);
       const width = heights.length > 25 ? 1 : 3.2;
       for (let i = 1; i < heights.length; i++) stroke([at(left, i), at(right, i)], width);
-      if (this.view.leaning) {
+      if (view.leaning) {
         // A column beside it, on a hinge, which the floors hold upright.
         const beside = heights.map((z, i) => [1.2 * right + at(right, i)[0], z]);
         stroke([[2.2 * right, 0], ...beside.slice(1)], 1.6);
@@ -176,7 +189,7 @@ class Stage {
     }
     stroke(whole(0), ["cantilever", "beam", "properties"].includes(kind) ? 5 : 7);
     if (kind === "cantilever") {
-      g.fillStyle = color("structure");
+      g.fillStyle = g.strokeStyle;
       const [x, y] = to(at(0, heights.length - 1));
       g.fillRect(x - 12, y - 7, 24, 14);
     }
@@ -191,7 +204,7 @@ class Stage {
         this.#attached(g, frame, to, { kind, between, height, cosine });
         continue;
       }
-      const tendon = kind === "tendon";
+      const tendon = isTendon(kind);
       const sunk = frame.sprung ? this.depth / zoom : 0;
       const from = to([position, -sunk - (tendon ? 0.02 * top : 0)]);
       const end = to(frame.place(position, tendon ? 0.6 * top : Math.min(BRACKET / zoom, 0.4 * top)));

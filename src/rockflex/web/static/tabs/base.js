@@ -2,8 +2,9 @@
 
 import { grounded, yields } from "../choices.js";
 import { clone, h, ink, svg } from "../dom.js";
-import { coil, colorOf, nameOf, strokes } from "../drawing.js";
+import { coil, colorOf, isTendon, nameOf, strokes } from "../drawing.js";
 import { folded, select, tableField, trouble } from "../form.js";
+import { t } from "../texts.js";
 
 const [WIDTH, HEIGHT] = [460, 104];
 const [BASE, GROUND] = [40, 74]; // px from the top
@@ -44,7 +45,7 @@ function sprung(at, count) {
 
 function drawn({ kind }, at) {
   const tone = ink(colorOf(kind));
-  const tendon = kind === "tendon";
+  const tendon = isTendon(kind);
   const [from, length] = tendon ? [GROUND + 10, GROUND + 6] : [GROUND, GROUND - BASE];
   return strokes(kind, length).map(({ points, width, fill }) => svg("polyline", {
     points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(from - v).toFixed(1)}`).join(" "),
@@ -169,9 +170,13 @@ export function elements({ about }, current, put, shown) {
 
 const KINDS = [
   ["", "rigid"], ["springs", "springs"], ["winkler", "bed, by subgrade modulus"],
-  ["asce41", "bed of ASCE 41, by shear modulus"],
+  ["asce41", "bed of ASCE 41, by shear modulus"], ["gazetas", t("bed of Gazetas, by shear modulus")],
 ];
-const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio", "method", "density"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
+const WITHOUT = {
+  winkler: ["shear_modulus", "poisson_ratio", "method", "density"],
+  asce41: ["subgrade_modulus", "end_zone", "end_ratio", "method", "density"],
+  gazetas: ["subgrade_modulus", "end_ratio", "damping", "method"],
+};
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
 const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
 const round = (value) => Number(value.toPrecision(2));
@@ -214,8 +219,9 @@ export function ground(app, shown) {
     if (name === "springs") return { ...mat, springs: { stiffness: round(stiffness / 2), heave_damping_ratio: DAMPING } };
     const bed = { breadth: round(2 * b), heave_damping_ratio: DAMPING };
     if (name === "winkler") return { ...mat, bed: { ...bed, subgrade_modulus: round(stiffness / (2 * b * bed.breadth)) } };
-    // Over half of the length the coefficient is 6.83/(1 − ν), over the rest 0.73/(1 − ν).
-    return { ...mat, bed: { ...bed, shear_modulus: round((stiffness * 0.65) / (2 * b * 2.8)), poisson_ratio: 0.35 } };
+    // Over half of the length the coefficient is 6.83/(1 − ν), over the rest 0.73/(1 − ν); 2.27/(1 − ν) for a square of Gazetas.
+    const [own, factor] = name === "gazetas" ? [{ method: name }, 2.27] : [{}, 2.8];
+    return { ...mat, bed: { ...bed, ...own, shear_modulus: round((stiffness * 0.65) / (2 * b * factor)), poisson_ratio: 0.35 } };
   }
 
   // Replace the ground, and leave what cannot be used on it.
@@ -269,6 +275,7 @@ export function ground(app, shown) {
 function kindOf(given) {
   if (given?.springs) return "springs";
   if (!given?.bed) return "";
+  if (given.bed.method) return given.bed.method;
   return given.bed.shear_modulus !== undefined || given.bed.poisson_ratio !== undefined ? "asce41" : "winkler";
 }
 

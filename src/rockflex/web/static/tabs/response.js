@@ -1,5 +1,6 @@
 // Response: the rocking structure, animated with its response histories, its peaks and its assumptions.
 
+import { alternatives } from "../alternatives.js";
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
 import { checksTable, limitsForm } from "../checks.js";
@@ -8,6 +9,7 @@ import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js"
 import { select, slider } from "../form.js";
 import { downloads } from "../jobs.js";
 import { legend, looks } from "../marks.js";
+import { project } from "../project.js";
 import { recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { t } from "../texts.js";
@@ -33,8 +35,7 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
-  ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
+  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["histories", "Histories (CSV)"],
   ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
@@ -42,6 +43,7 @@ const PATIENCE = 1500; // ms before the page says that it is computing
 
 export default function responseTab(app) {
   let view = null;
+  let ghosts = []; // the responses of kept alternatives
   const player = new Player(follow, app.about.elements);
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
@@ -66,11 +68,20 @@ export default function responseTab(app) {
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const checks = h("div");
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
+  const kept = alternatives(app, (found) => {
+    ghosts = found.map(({ models: [m] }) => m);
+    ghosts.forEach(inUnits);
+    Object.assign(player.stage, { ghosts: found }).draw();
+    if (!view) return;
+    choose(view);
+    draw();
+  });
+  const saved = project(app);
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
       h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
         "drag or press + and − to zoom; double-click or press Escape to reset.")),
-    h("h2", {}, "Largest values"), peaks, elements.table, checks,
+    h("h2", {}, "Largest values"), peaks, kept.element, elements.table, checks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
       energy.element));
   const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
@@ -81,7 +92,7 @@ export default function responseTab(app) {
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       records, player.element, form,
       h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" })),
-      limitsForm(app)),
+      limitsForm(app), saved.element),
     results);
   results.append(downloads(app, element, FILES));
 
@@ -92,7 +103,7 @@ export default function responseTab(app) {
     // Of the element whose loop is drawn, with its number in the drawing of the base.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = titled(`F_${view.element + 1} [{unit}]`, "force");
     panels.forEach(([, chart, parts], p) => {
-      const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
+      const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
         x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
         width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
       })));
@@ -103,13 +114,13 @@ export default function responseTab(app) {
         vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
       });
     });
-    const lifting = view.models.filter((m) => m.lifts);
+    const lifting = [...view.models, ...ghosts].filter((m) => m.lifts);
     loop.set(lifting.map((m) => (
       { t: m.t, x: m.scaled.rotation, y: m.scaled.base_moment, until: m.fall_time ?? Infinity, label: m.label, look: m.look })));
     loop.chart.element.parentElement.hidden = !lifting.length;
     elements.set(view);
     energy.set(view);
-    keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
+    keys.replaceChildren(legend([...view.models, ...ghosts].map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
     checks.replaceChildren(checksTable(view.checks, first.label));
     verdict.textContent = summary(view);
@@ -123,7 +134,7 @@ export default function responseTab(app) {
     const known = answer.models.every((m) => m.scaled.total_top_displacement);
     seen.hidden = !known;
     const key = known ? seen.querySelector("select").value : "top_displacement";
-    for (const m of answer.models) m.scaled.displacement = m.scaled[key];
+    for (const m of [...answer.models, ...ghosts]) m.scaled.displacement = m.scaled[key];
     const [, chart] = panels.find(([name]) => name === "displacement");
     chart.options.yLabel = titled(DISPLACEMENTS.find(([name]) => name === key)[2], "length");
   }
@@ -157,8 +168,7 @@ export default function responseTab(app) {
     const all = looks(answer.models);
     answer.models.forEach((m, i) => {
       for (const name of [...OTHERS, ...SERIES]) m[name] = m[name] && decode(m[name]);
-      const quantity = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? "length";
-      m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v / unit(quantity(key)).size)]));
+      inUnits(m);
       m.look = all[i];
     });
     choose(answer);
@@ -181,8 +191,14 @@ export default function responseTab(app) {
     }
     for (const each of [player.element, scale, results]) each.hidden = shown;
     for (const each of set ? [form, set.results] : []) each.hidden = !shown;
-    if (shown) player.pause();
-    (shown ? set.refresh : load)();
+    saved.refresh();
+    if (shown) {
+      player.pause();
+      set.refresh();
+      return;
+    }
+    kept.refresh();
+    load();
   }
   globalThis.rockflexStage = {
     stage: player.stage,
@@ -196,6 +212,12 @@ export default function responseTab(app) {
     loops: { base: loop, element: elements.loop },
   };
   return { element, refresh, leave: () => player.pause(), close: (runs) => set?.close(runs) };
+}
+
+// The curves of a model in the units of their charts.
+function inUnits(m) {
+  const quantity = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? "length";
+  m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v / unit(quantity(key)).size)]));
 }
 
 // Intervals of time in which the base of a model is uplifted.

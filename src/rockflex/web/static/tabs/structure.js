@@ -1,10 +1,12 @@
 // Structure: a drawing that moves and is a form, the whole form folded by task, modes, and how many of them are needed.
 
+import { alternatives } from "../alternatives.js";
 import { attempt, send } from "../api.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { downloads } from "../jobs.js";
+import { project } from "../project.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { base, elements, ground, without } from "./base.js";
@@ -80,9 +82,11 @@ export default function structureTab(app) {
     app.change({});
   });
   const options = runs(app, () => null);
+  const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw());
+  const saved = project(app);
   const facts = h("div");
   const more = folded("modes", "Modes, masses, and which model to use", facts);
-  const results = h("div", { class: "results" }, more, app.next("response", "Next: see forces and energies over time."),
+  const results = h("div", { class: "results" }, kept.element, more, app.next("response", "Next: see forces and energies over time."),
     app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
   const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
@@ -90,7 +94,7 @@ export default function structureTab(app) {
       folded("structure", "Structure: all fields", kind, field("structure.name", "Name", name),
         h("div", { "data-path": "structure" }, fields, trouble())),
       held, below, folded("runs", "Models and assumptions", options.element),
-      folded("import", "Import matrices", importMatrices(limits.file, current, (structure) => put(structure, true)))),
+      folded("import", "Import matrices", importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
     results);
 
   // The first preset of a kind, or default values.
@@ -164,7 +168,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(downloads(app, element, [["report", "Report (HTML)"], ["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]));
+  results.append(downloads(app, element, [["report", "Report (HTML)"]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
@@ -213,6 +217,8 @@ export default function structureTab(app) {
       results.classList.add("stale");
       form();
       below.refresh();
+      kept.refresh();
+      saved.refresh();
       options.refresh();
       shown.quick.refresh();
     }
