@@ -120,9 +120,10 @@ def test_the_link_keeps_the_units_and_files_are_in_si_units(visit, client):
     address = visitor.page.evaluate("location.hash")
     other = visit(f"/{address}")
     assert other.page.locator("#units").input_value() == "kip-in"
+    other.page.locator('#three dd:text-matches("rad$")').wait_for()
     assert float(field(other, "few.B").input_value()) == pytest.approx(half / constants.inch, rel=6e-4)
-    _, structure = client.download("/api/file/structure", other.state())
-    assert f"half_width = {half}" in structure.decode()
+    _, study = client.download("/api/file/study", other.state())
+    assert f"half_width = {half}" in study.decode()
     _, report = client.download("/api/file/report", other.state())
     assert "kip in" in report.decode()
     assert "kN m" not in report.decode()
