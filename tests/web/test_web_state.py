@@ -22,7 +22,7 @@ from rockflex.structure.file import ELEMENTS, KINDS, TomlTable
 from rockflex.web._encoding import envelope_indices
 from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import PageState, TargetChoice, parse_page_json, parse_page_state
+from rockflex.web._state import PageState, RecordSetChoice, TargetChoice, parse_page_json, parse_page_state
 from rockflex.web._structure import build_page_structure, structure_view
 
 FRAME = PRESETS[0]["structure"]
@@ -256,7 +256,8 @@ def test_an_old_link_still_opens() -> None:
     content |= {"units": "kN", "limits": {}, "record_set": state.record_set.model_dump()}
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
-    content |= {"alternatives": [], "head": {}}
+    content |= {"alternatives": [], "head": {}, "limits": {}}
+    content["record_set"] = RecordSetChoice.model_validate({}).model_dump()
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert as_json_value(state.model_dump(exclude_none=True)) == content
