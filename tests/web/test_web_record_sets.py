@@ -76,6 +76,18 @@ def test_rule_and_limits_change_without_another_run(client, state, done, same) -
     )
 
 
+def test_demands_checks_and_the_report_are_in_the_units_of_the_page(client, state, done) -> None:
+    path, state = f"/api/study/record_set/{done[0]}", state | {"units": "kip-in"}
+    answer = client.ask(path, state)
+    top = next(each for each in answer["demands"] if each["name"] == "max_total_top_displacement")
+    assert (top["unit"], top["size"]) == ("in", 0.0254)
+    (seat,) = (each for each in answer["checks"]["rows"] if each["unit"] == "in")
+    assert seat["demand"] == pytest.approx(seat["value"] / 0.0254, rel=1e-12)
+    report = client.download(f"{path}/report", state)[1].decode()
+    assert "kip in" in report
+    assert "kN m" not in report
+
+
 def test_files_of_a_set(client, state, done, same, tmp_path, monkeypatch) -> None:
     path = f"/api/study/record_set/{done[0]}"
     name, report = client.download(f"{path}/report", state)

@@ -48,7 +48,8 @@ export async function ask(path, body) {
   asking.get(path)?.abort();
   const controller = new AbortController();
   asking.set(path, controller);
-  return (await post(path, "json", JSON.stringify(body), controller.signal)).json();
+  const answer = await post(path, "json", JSON.stringify(body), controller.signal);
+  return answer.json().catch(() => { throw new Refusal({}, 0); }); // replaced while it was read
 }
 
 export async function send(path, file) {
