@@ -183,6 +183,7 @@ export function drawing(app, settle) {
     if (of === app.state.structure) wanted = {};
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
     player.set(view);
+    place();
     figures.replaceChildren(...three(m, run));
     const now = performance.now();
     if (!stage.held || now - told > SELDOM) {

@@ -88,9 +88,9 @@ class Stage {
       this.depth = depthOf(this.view, this.amplification, first);
       this.zoom = Math.min((this.height - 74 - this.depth) / (top * this.room), wide);
     }
-    const scale = [width, this.height, this.zoom, this.depth].join();
-    if (scale !== this.scale) this.placed?.(); // which reads and writes the page, so not at every frame
+    const [before, scale] = [this.scale, [width, this.height, this.zoom, this.depth].join()];
     Object.assign(this, { width, scale });
+    if (scale !== before) this.placed?.(); // which changes the page, so not at every frame
     this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
   }
 
