@@ -4,7 +4,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from string import ascii_uppercase
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, cast
 
 from rockflex._json import as_json_value
 from rockflex._units import KN
@@ -82,8 +82,8 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
     for name, response in zip(kept, comparison.responses, strict=False):  # the present one is the last
         entry = found[name].structure
         built = build_page_structure(entry)
-        moving = {"name": name, "models": [response_curves(built, response, None, SKETCH_POINTS)]}
-        moving["ground"] = ground_view(project.ground.get(name), built.properties)
+        curves, ground = response_curves(built, response, None, SKETCH_POINTS), project.ground.get(name)
+        moving = {"name": name, "models": [curves], "ground": ground_view(ground, built.properties)}
         ghosts.append(structure_outline_view(entry, built) | moving)
     return as_json_value(
         {
@@ -99,6 +99,6 @@ def comparison_report_file(state: PageState, uploads: UploadedRecords, suffix: s
     """Return the name and the content of the report of all alternatives, of the suffix ".html" or ".pdf"."""
     project = project_of_state(state, uploads)
     with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
-        comparison = project.comparison(1, RUN_WORK_LIMIT)
-        file = write_report(comparison, Path(folder) / f"comparison{suffix}", **dict(project.head))
+        comparison, head = project.comparison(1, RUN_WORK_LIMIT), cast("dict[str, Any]", project.head)
+        file = write_report(comparison, Path(folder) / f"comparison{suffix}", **head)
         return file.name, file.read_bytes()
