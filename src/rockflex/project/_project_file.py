@@ -25,6 +25,7 @@ from rockflex.structure.file import (
     parse_toml_table,
     structure_from_table,
 )
+from rockflex.study import InitialState
 
 FORMAT = "rockflex-project-1"
 DOCUMENT = "project.toml"
@@ -37,9 +38,10 @@ TABLES: dict[str, dict[str, type]] = {
 }
 """The tables of results, and columns that each has at least."""
 
-_OPTIONS = ("bouc_wen", "impact", "ground")  # objects of each structure
+_OPTIONS = ("bouc_wen", "impact", "ground", "initial")  # objects of each structure
 _CLASSES: dict[str, type] = {
-    each.__name__: each for each in (BoucWen, CheckLimits, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
+    each.__name__: each
+    for each in (BoucWen, CheckLimits, InitialState, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
 }
 _TABLE = SchemaKey("a table", form=PLAIN)
 _NAME = SchemaKey("a name, in quotes", form=PLAIN)
@@ -55,6 +57,7 @@ class StructureRow(TomlTable):
     bouc_wen: Annotated[dict[str, Any] | None, _TABLE] = None
     impact: Annotated[dict[str, Any] | None, _TABLE] = None
     ground: Annotated[dict[str, Any] | None, _TABLE] = None
+    initial: Annotated[dict[str, Any] | None, _TABLE] = None
 
 
 class RecordRow(TomlTable):
