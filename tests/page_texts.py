@@ -31,7 +31,7 @@ def texts_of_answers() -> set[str]:
     tendons of a design; and what stands beside the values of a structure and a record.
     """
     found = {*_of_forms(_answer_about_page()), *_of_facts(), "no tendon", "its own tendons", _structure.RECENTRING_HELP}
-    found |= {"limits of checks", "the rule of a set", "results"}  # what the page leaves of a project
+    found.add("results")  # which the page leaves of a project
     found |= {text for measure in MEASURES.values() for text in (measure.head, measure.words, measure.title)}
     found |= {*SOURCES, *(each.name for each in KINDS), *(demand.symbol for demand in DEMANDS.values())}
     return found - {""}

@@ -156,7 +156,8 @@ def test_a_project_of_python_opens_with_the_same_responses(client, tmp_path) -> 
     )  # fmt: skip
     answer = opened(client, project.save(tmp_path / "a").read_bytes())
     state = answer["state"]
-    assert answer["left"] == ["limits of checks"]
+    assert answer["left"] == []
+    assert answer["state"]["limits"]["friction"] == 0.4
     assert (state["head"], state["free_vibration"]) == ({"author": "B"}, 60.0)
     assert [each["name"] for each in state["alternatives"]] == list(STRUCTURES)
     for each in state["alternatives"]:

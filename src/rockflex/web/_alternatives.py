@@ -67,7 +67,8 @@ def project_of_state(state: PageState, uploads: UploadedRecords) -> Project:
     check_work_of_runs(cases, motion)
     with errors_as_refusals("alternatives"):
         structures = given.pop("structures")
-        return Project(structures, motion, **given, free_vibration=state.free_vibration, head=state.head_texts())  # pyright: ignore[reportArgumentType]
+        own = {"limits": state.check_limits(), "head": state.head_texts()}
+        return Project(structures, motion, **given, free_vibration=state.free_vibration, **own)  # pyright: ignore[reportArgumentType]
 
 
 def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
