@@ -306,7 +306,8 @@ def u_plate_fuse(
     k = n 16 E b/(27 π) (t/D)³. The outer fibres yield first at 2/3 of F_y, with the stiffness 4 E b/(3 π) (t/D)³ of a
     thin curved beam. k is 4/9 of that: the slope from zero to the curve of an ideally plastic plate at 0.998 F_y, which
     a bilinear law has in its place. The strain of the plate, about t/D, does not grow with the stroke; how many cycles
-    it bears, and where the legs end, is not modelled. Neither paper was at hand: the formulas are checked by mechanics.
+    it bears, and where the legs end, is not modelled. The formulas are checked by mechanics, not against the text of
+    the papers.
 
     Parameters
     ----------

@@ -82,8 +82,8 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
     for name, response in zip(kept, comparison.responses, strict=False):  # the present one is the last
         entry = found[name].structure
         built = build_page_structure(entry)
-        moving = {"name": name, "models": [response_curves(built, response, None, SKETCH_POINTS)]}
-        moving["ground"] = ground_view(project.ground.get(name), built.properties)
+        curves, ground = response_curves(built, response, None, SKETCH_POINTS), project.ground.get(name)
+        moving = {"name": name, "models": [curves], "ground": ground_view(ground, built.properties)}
         ghosts.append(structure_outline_view(entry, built) | moving)
     return as_json_value(
         {
@@ -100,6 +100,6 @@ def comparison_report_file(state: PageState, uploads: UploadedRecords, suffix: s
     project = project_of_state(state, uploads)
     with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
-        told = {"units": state.units, "language": state.language, **project.head}
+        told: dict[str, Any] = {"units": state.units, "language": state.language, **project.head}
         file = write_report(comparison, Path(folder) / f"comparison{suffix}", **told)
         return file.name, file.read_bytes()

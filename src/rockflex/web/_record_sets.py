@@ -87,7 +87,7 @@ class RecordSetJob(RunsJob):
             _ = found[-1].warnings  # its energies, which the response then has
             check(found[-1], study.state.check_limits(friction=study.friction))
             self.runs += 1
-        given = {"properties": study.built.properties, "rule": None, "periods": study.periods}
+        given: dict[str, Any] = {"properties": study.built.properties, "rule": None, "periods": study.periods}
         _SETS.put(self.key, RecordSet(responses=tuple(found), motions=study.motions, **given))
 
 
