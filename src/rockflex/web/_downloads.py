@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
@@ -44,6 +44,8 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
     times = "" if state.scale == 1.0 else f" × {state.scale:g}"
     record = f"{motion.name or translated('a ground motion')}{times}"
     name = state.structure.name or translated("Structure")
+    usual = translated("{structure} under {record}", structure=name, record=record)
+    head: dict[str, Any] = {"title": usual, **state.head_texts()}
     with errors_as_refusals("models"):
         text = run_report_as_html(
             found,
@@ -51,7 +53,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             motion=motion,
             units=state.units,
             language=state.language,
-            **{"title": translated("{structure} under {record}", structure=name, record=record)} | state.head_texts(),
+            **head,
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
             limits=state.check_limits(),
         )
