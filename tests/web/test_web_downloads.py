@@ -269,3 +269,19 @@ def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch)
     visitor.respond()
     visitor.page.get_by_role("button", name="Animation (GIF)").click()
     visitor.wait_for_error("free_vibration", "The animation would last ")
+
+
+def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
+    status, headers, body = client.request("/languages/de.json")
+    assert (status, headers["content-type"]) == (200, "application/json")
+    assert headers["etag"]
+    german = json.loads(body)
+    other = {"name": "A", "structure": PRESETS[1]["structure"], "models": ["MDOF-S"]}
+    state = client.state(language="de", alternatives=[other])
+    for what, text in (("report", "Largest values"), ("comparison", "story drift")):
+        page = client.download(f"/api/file/{what}", state)[1].decode()
+        assert '<html lang="de"' in page
+        assert german[text] in page
+    rows = client.ask("/api/alternatives", state)["rows"]
+    assert any(german["story drift"] in row[0]["text"] for row in rows)
+    assert list(client.refused("/api/state", state | {"language": "la"})) == ["language"]

@@ -250,7 +250,7 @@ def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
     state = parse_page_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
-    content["units"] = "kN"
+    content |= {"units": "kN", "language": "en"}
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
     content |= {"alternatives": [], "head": {}, "limits": {}}

@@ -5,7 +5,7 @@ import { clone, decode, h, latest, scrolled, symbol, tableOf } from "./dom.js";
 import { trouble } from "./form.js";
 import { downloads } from "./jobs.js";
 import { legend } from "./marks.js";
-import { t } from "./texts.js";
+import { t, written } from "./texts.js";
 
 const OWN = ["structure", "models", "impact", "restitution", "bouc_wen", "ground"]; // what an alternative is made of
 const WORDS = ["label", "status"]; // of a response, whose other texts are curves
@@ -76,7 +76,7 @@ export function alternatives(app, show) {
       m.label = each.name;
       m.look = LOOKS[kept.findIndex(({ name }) => name === each.name)];
     }
-    const cell = ({ text, value }) => h("td", { "data-value": value }, text);
+    const cell = ({ text, value }) => h("td", { "data-value": value }, written(text));
     table.hidden = reports.hidden = !answer.rows.length;
     table.replaceChildren(answer.rows.length ? tableOf(answer.heads, answer.rows.map(([first, ...others]) => (
       h("tr", {}, h("th", { scope: "row" }, symbol(first.text)), others.map(cell))))) : "");

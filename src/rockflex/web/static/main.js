@@ -122,8 +122,8 @@ function heading() {
     suite: record.name, pulse: t("a pulse"), upload: t("an uploaded record"), folder: record.given || t("records of a folder"),
   }[record.source];
   const times = scale === 1 ? "" : ` × ${number(scale)}`;
-  const of = { structure: structure.name || t("Structure"), motion: `${motion}${times}` };
-  const one = t("{structure} under {motion}", of);
+  const of = { structure: structure.name || t("Structure"), record: `${motion}${times}` };
+  const one = t("{structure} under {record}", of);
   const earthquake = target.shown ? t("{structure} under records for a target spectrum", of) : one;
   const response = record_set.shown ? t("{structure} under a set of records", of) : one;
   const about = { structure: of.structure, earthquake, response }[tab] ?? t("{structure} under many records", of);
