@@ -2,7 +2,6 @@
 
 import ast
 import html
-import io
 import re
 from collections import Counter
 from pathlib import Path
@@ -11,12 +10,12 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from babel.messages.extract import extract_javascript
 from jinja2.ext import extract_from_ast
 from scipy import constants
 from typer.testing import CliRunner
 
 import rockflex as rf
+from page_texts import texts_of_answers, texts_of_scripts
 from report_case import FRAME, HELD, PULSE, SPRINGS, runs
 from rockflex._language import Language, catalogue, chosen_language, translated, use_language
 from rockflex.cli._app import app
@@ -58,13 +57,6 @@ def texts_in_templates():
             yield text if isinstance(text, str) else text[0]
 
 
-def texts_in_scripts():
-    for file in (SOURCE / "web" / "static").rglob("*.js"):
-        with file.open("rb") as content:
-            for _, _, text, _ in extract_javascript(content, ("t",), (), {"template_string": True}):
-                yield text if isinstance(text, str) else text[0]
-
-
 def words_of_class(name):
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
 
@@ -81,6 +73,7 @@ def labels():
     yield from (text for each in _QUANTITIES.values() for text in (each.symbol, each.words))
     yield from (*_ELEMENT_NAMES.values(), *LABELS.values(), *(label for *_, label in LINES.values()))
     yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
+    yield from texts_of_answers()
 
 
 def has_word(text):
@@ -94,16 +87,13 @@ def names_in(text):
 
 @pytest.fixture(scope="module")
 def known():
-    used = {*texts_in_python(), *texts_in_templates(), *texts_in_scripts()}
+    used = {*texts_in_python(), *texts_in_templates(), *texts_of_scripts()}
     return used, used | {text for text in labels() if has_word(text)}
 
 
 def test_every_source_is_read(known):
     texts, _ = known
-    assert {"Length of the run", "{n} records", "{n} record", "Largest values"} <= texts
-    script = io.BytesIO(b'h("p", t("{count} records", { count: 7 })); t("one"); t(`two`)')
-    found = [text for _, _, text, _ in extract_javascript(script, ("t",), (), {"template_string": True})]
-    assert [text if isinstance(text, str) else text[0] for text in found] == ["{count} records", "one", "two"]
+    assert {"Length of the run", "{n} records", "{n} record", "Largest values", "Keep as {name}"} <= texts
 
 
 @pytest.mark.parametrize("name", OTHERS)

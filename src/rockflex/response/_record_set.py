@@ -204,10 +204,6 @@ class RecordSet(HtmlTable, Value):
         overturned record exceeds every value: with one `mean` is NaN, `worst` and what lies beyond the ranks of the
         others is infinite, and `design` is NaN unless the rule allows it. `reason` tells how `design` was found.
         """
-        return self._statistics.copy()
-
-    @cached_property
-    def _statistics(self) -> "pd.DataFrame":
         import pandas as pd
 
         peaks, fallen = self._peaks, self.fallen
