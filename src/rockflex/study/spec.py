@@ -438,12 +438,12 @@ class StructuresStudySpec(RunsStudySpec):
     def of_matrix(cls, structures: Structures, matrix: StudyMatrix, **keys: Any) -> Self:
         """Return the study of these structures with the records, models and options of their matrix."""
         options = matrix.options
-        return cls(
-            structures=structures, records=matrix.motions, models=matrix.labels, impact=options.impact,
-            bouc_wen=options.bouc_wen, ground=options.ground, demands=options.demands or None,
-            free_vibration="settle" if options.free_vibration is None else options.free_vibration,
-            work_limit="none" if options.work_limit is None else options.work_limit, **keys,
-        )  # fmt: skip
+        given: dict[str, Any] = {name: getattr(options, name) for name in ("impact", "bouc_wen", "ground")}
+        given |= {"structures": structures, "records": matrix.motions, "models": matrix.labels}
+        given["free_vibration"] = "settle" if options.free_vibration is None else options.free_vibration
+        given["demands"] = options.demands or None
+        given["work_limit"] = "none" if options.work_limit is None else options.work_limit
+        return cls(**given, **keys)
 
     def matrix(self, *, friction: bool = False) -> StudyMatrix:
         """Build the structures and load the records."""

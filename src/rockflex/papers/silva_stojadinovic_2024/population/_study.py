@@ -363,8 +363,8 @@ def run_population(
     count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(study.checked_motions(motions))
     free, limit = study.free_vibration_time(free_vibration), study.checked_work_limit(work_limit)
-    spec = PopulationStudy(
-        records=suite, pairs=count, seed=start, free_vibration="settle" if free is None else free,
-        work_limit="none" if limit is None else limit,
-    )  # fmt: skip
+    given: dict[str, Any] = {"records": suite, "pairs": count, "seed": start}
+    given["free_vibration"] = "settle" if free is None else free
+    given["work_limit"] = "none" if limit is None else limit
+    spec = PopulationStudy(**given)
     return study.run_plan(spec.plan(), workers, progress, dask=dask, folder=folder, study=lambda: spec)
