@@ -196,7 +196,7 @@ def invoke(*arguments):
 
 
 def test_the_command_compares_files(files):
-    result = invoke("a.toml", "b.toml", "el-centro-1940", "--out", "both.html")
+    result = invoke("a.toml", "b.toml", "el-centro-1940", "--report", "both.html")
     assert result.exit_code == 0, result.stderr
     assert "wide to slender" in result.stdout
     frames = [rf.read_structure(files / name) for name in ("a.toml", "b.toml")]
@@ -209,7 +209,7 @@ def test_the_command_compares_files(files):
     for demand, values in expected.demands("max").to_dict("index").items():
         assert found["demands"]["max"][demand] == pytest.approx(values, rel=1e-9)
     assert "wide to slender" in (files / "both.html").read_text("utf-8")
-    assert invoke("a.toml", "b.toml", "el-centro-1940", "--out", "both.html").exit_code == 2  # exists
+    assert invoke("a.toml", "b.toml", "el-centro-1940", "--report", "both.html").exit_code == 2  # exists
 
 
 def test_the_command_tells_statistics_of_several_records(files):
@@ -228,7 +228,7 @@ def test_the_command_tells_statistics_of_several_records(files):
         (["a.toml", "el-centro-1940"], "2 to 6"),
         (["a.toml", "a.toml", "el-centro-1940"], "twice"),
         (["a.toml", "b.toml"], "No ground motion"),
-        (["a.toml", "b.toml", "el-centro-1940", "--out", "x.txt"], "--out"),
+        (["a.toml", "b.toml", "el-centro-1940", "--report", "x.txt"], "--report"),
         (["a.toml", "b.toml", "el-centro-1940", "--model", "XDOF"], "XDOF"),
     ],
 )

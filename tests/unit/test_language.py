@@ -206,7 +206,11 @@ def test_commands_write_reports_in_a_language(tmp_path, monkeypatch):
     pier = str(EXAMPLES / "bridge_pier.toml")
     commands = {
         "run": ["run", pier, "el-centro-1940", "--model", "2DOF-S", "--report", "run.html"],
-        "compare": ["compare", pier, str(EXAMPLES / "restrained_pier.toml"), "el-centro-1940", "--out", "compare.html"],
+        "compare": [
+            *("compare", pier, str(EXAMPLES / "restrained_pier.toml"), "el-centro-1940"),
+            "--report",
+            "compare.html",
+        ],
         "check": [*("check", pier, "el-centro-1940", "--report", "check.html")],
     }
     for name, words in commands.items():

@@ -217,5 +217,5 @@ def test_energy_is_drawn_up_to_the_fall(fallen):
 
 
 def test_energy_needs_a_history():
-    with pytest.raises(rf.InputError, match="keeps peaks only, but a plot needs the history"):
+    with pytest.raises(rf.InputError, match="keeps peaks only, but its history is needed"):
         plot_energy(rf.simulate(FRAME, RECORD, "2DOF-S", output="peaks"))

@@ -164,7 +164,7 @@ def test_the_law_marks_where_a_fuse_no_longer_helps():
     ("result", "said"),
     [
         (3.0, "result must be a Response or a MomentRotation, but float was given"),
-        (rf.simulate(WALL, MOTION, "2DOF-S", output="peaks"), "keeps peaks only, but a plot needs the history"),
+        (rf.simulate(WALL, MOTION, "2DOF-S", output="peaks"), "keeps peaks only, but its history is needed"),
         (rf.simulate(WALL, PULSE, "fixed"), "cannot lift, so it has no loops"),
     ],
 )

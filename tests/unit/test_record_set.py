@@ -175,3 +175,11 @@ def test_the_report_of_a_set(tmp_path):
     with pytest.raises(rf.InputError) as caught:
         rf.write_report(found, tmp_path / "again.html", friction=0.5)
     assert caught.value.field == "friction"
+
+
+def test_a_changed_table_changes_nothing_else():
+    found = rf.simulate_set(FRAME, pulses(3), "2DOF-S")
+    largest = found.statistics.loc["max_rotation", "worst"]
+    found.peaks["max_rotation"] *= 1000.0
+    found.statistics["worst"] *= 1000.0
+    assert found.peaks["max_rotation"].max() == found.statistics.loc["max_rotation", "worst"] == largest

@@ -140,7 +140,7 @@ def test_what_cannot_be_written_is_refused(response, table, tmp_path):
     with pytest.raises(rf.InputError, match="int was given") as caught:
         rf.to_matlab(1, tmp_path / "run.mat")
     assert caught.value.field == "result"
-    with pytest.raises(rf.InputError, match="only peaks"):
+    with pytest.raises(rf.InputError, match="keeps peaks only"):
         rf.to_matlab(rf.simulate(FRAME, PULSE, output="peaks"), tmp_path / "run.mat")
     for result in (response, table):
         with pytest.raises(rf.InputError, match="'angle' was given") as caught:

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import rockflex as rf
-from rockflex.web import _downloads
+from rockflex.web import _downloads, _response
 from rockflex.web._downloads import animation_file
 from rockflex.web._forms import PRESETS
 from rockflex.web._jobs import BackgroundFileJob
@@ -58,13 +58,13 @@ def test_what_takes_long_is_left_out_and_said(client, monkeypatch) -> None:
     text = client.download("/api/file/report", on_springs)[1].decode()
     assert text.count("<td>not computed</td>") == 2
     assert "Not computed: energies and friction of a run that would take too long here." in text
-    monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
+    monkeypatch.setattr(rf.History, "required_friction", property(lambda _: 1 / 0))
     client.download("/api/file/report", on_springs)
 
     def refuse(*_):
         raise _downloads.Refusal({"energy": "too long"})
 
-    monkeypatch.setattr(_downloads, "check_work_of_energy", refuse)
+    monkeypatch.setattr(_response, "check_work_of_energy", refuse)
     text = client.download("/api/file/report", client.state(models=["2DOF-S"]))[1].decode()
     assert text.count("<td>not computed</td>") == 2
 
@@ -269,3 +269,19 @@ def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch)
     visitor.respond()
     visitor.page.get_by_role("button", name="Animation (GIF)").click()
     visitor.wait_for_error("free_vibration", "The animation would last ")
+
+
+def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
+    status, headers, body = client.request("/languages/de.json")
+    assert (status, headers["content-type"]) == (200, "application/json")
+    assert headers["etag"]
+    german = json.loads(body)
+    other = {"name": "A", "structure": PRESETS[1]["structure"], "models": ["MDOF-S"]}
+    state = client.state(language="de", alternatives=[other])
+    for what, text in (("report", "Largest values"), ("comparison", "story drift")):
+        page = client.download(f"/api/file/{what}", state)[1].decode()
+        assert '<html lang="de"' in page
+        assert german[text] in page
+    rows = client.ask("/api/alternatives", state)["rows"]
+    assert any(german["story drift"] in row[0]["text"] for row in rows)
+    assert list(client.refused("/api/state", state | {"language": "la"})) == ["language"]

@@ -41,6 +41,7 @@ def test_kept_ones_are_compared_named_edited_and_removed(visitor, visit, el_cent
     box.fill("narrow")
     box.press("Enter")
     wait_for_heads(page, ["narrow", "A", "A to narrow [%]"])
+    assert box.evaluate("e => e === document.activeElement")
     assert page.locator("#keep").inner_text() == "Keep as A"
     # A link has them too.
     other = visit(f"/{page.evaluate('location.hash')}")

@@ -63,6 +63,22 @@ def test_it_stands_still_for_those_who_want_that(visit) -> None:
     assert page.evaluate(TIME) == time
 
 
+def test_a_drag_draws_only_what_answers_bring(visit) -> None:
+    page = visit(reduced_motion="no-preference").page
+    page.wait_for_function("() => globalThis.rockflexDrawn?.player.playing")
+    box = page.locator('[data-handle="B"]').bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    time = page.evaluate(TIME)
+    page.wait_for_timeout(300)
+    assert page.evaluate(TIME) == time
+    page.mouse.move(box["x"] + 30, box["y"])
+    page.wait_for_function(f"t => {TIME} !== t", arg=time)
+    page.mouse.up()
+    time = page.evaluate(TIME)
+    page.wait_for_function(f"t => {TIME} !== t", arg=time)
+
+
 def test_width_and_height_are_dragged(visit) -> None:
     visitor = visit()
     handle(visitor, "B").wait_for()

@@ -94,7 +94,7 @@ def motion_of(folder: Path, name: str, vertical: str | None = None) -> rf.Ground
 def test_a_folder_is_reported_and_a_record_of_it_is_simulated(visitor, folder, frame) -> None:
     page = visitor.page
     give(visitor, folder)
-    assert page.locator("#taken").inner_text().startswith("3 records taken, 5 entries not. 1 of ")
+    assert page.locator("#taken").inner_text().startswith("3 records taken. 5 entries not taken. Recordings: ")
     row = page.locator('tr[data-file="RSN7_TEST000.AT2"]')
     motion = motion_of(folder, "RSN7_TEST000")
     assert float(row.locator("[data-value]").get_attribute("data-value")) == motion.pga

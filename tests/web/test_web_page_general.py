@@ -77,7 +77,7 @@ def test_two_visitors_do_not_see_each_other(visit) -> None:
     one, other = visit(), visit()
     one.page.wait_for_selector("#adequacy")
     one.fill("structure.name", "<b>Own</b>")
-    one.page.wait_for_function("() => document.querySelector('[data-task="modes"] h2').textContent === '<b>Own</b>'")
+    one.page.wait_for_function("() => document.querySelector('[data-task=modes] h2').textContent === '<b>Own</b>'")
     one.tab("earthquake")
     one.fill("scale", "3")
     other.page.reload()

@@ -357,7 +357,7 @@ def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
     assert page.evaluate("rockflexStage.panel.zoom") is None
 
 
-def test_a_long_wait_is_told(visitor) -> None:
+def test_a_long_wait_is_explained(visitor) -> None:
     page, held = visitor.page, []
     page.route("**/api/response", lambda route: held.append(route))
     visitor.tab("response")

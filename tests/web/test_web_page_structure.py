@@ -32,7 +32,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
     for place, preset in enumerate(PRESETS):
         page.get_by_label("Start from").select_option(str(place))
         page.wait_for_function(
-            "n => document.querySelector('.results h2').textContent === n", arg=preset["structure"]["name"]
+            "n => document.querySelector('[data-task=modes] h2').textContent === n", arg=preset["structure"]["name"]
         )
         assert page.locator(".error:visible").all_inner_texts() == []
     for kind in visitor.page.evaluate("Object.keys(rockflexPage.about.kinds)"):

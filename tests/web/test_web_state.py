@@ -217,11 +217,8 @@ def test_the_parameters_of_both_edges_are_shown() -> None:
     p = build_page_structure(state.structure).properties
     shown = structure_view(state.structure)
     assert (shown["eccentricity"], shown["half_width"]) == (0.3, 1.9)
-    moments = {each["help"]: each["value"] for each in shown["properties"] if each["symbol"] == "M_r"}
-    assert moments == {
-        "to the right: moment at which the base lifts": p.pivot(1).resisting_moment,
-        "to the left: moment at which the base lifts": p.pivot(-1).resisting_moment,
-    }
+    moments = {each["edge"]: each["value"] for each in shown["properties"] if each["symbol"] == "M_r"}
+    assert moments == {side: p.pivot(side).resisting_moment for side in (1, -1)}
     assert {each["symbol"]: each["value"] for each in shown["properties"]}["e"] == 0.3
     plain_view = structure_view(parse_page_state({"structure": FRAME}).structure)
     symbols = [each["symbol"] for each in plain_view["properties"]]
@@ -253,7 +250,7 @@ def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
     state = parse_page_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
-    content["units"] = "kN"
+    content |= {"units": "kN", "language": "en"}
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
     content |= {"alternatives": [], "head": {}, "limits": {}}

@@ -56,7 +56,7 @@ rockflex run structure.toml el-centro-1940 --model 2DOF-S,MDOF-S --scale 1.5 --o
 
 rockflex check structure.toml chosen --rule ec8 --limits limits.toml
 
-rockflex compare a.toml b.toml fema-p695-far-field --out compared.html
+rockflex compare a.toml b.toml fema-p695-far-field --report compared.html
 
 rockflex project new pier.rockflex a.toml b.toml chosen --rule ec8
 

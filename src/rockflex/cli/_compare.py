@@ -20,7 +20,7 @@ EPILOG = """[bold]Examples[/bold]
 
 rockflex compare free.toml tied.toml el-centro-1940
 
-rockflex compare a.toml b.toml c.toml fema-p695-far-field --model MDOF-S --free-vibration settle --out compared.html
+rockflex compare a.toml b.toml c.toml fema-p695-far-field --model MDOF-S --free-vibration settle --report compared.html
 
 rockflex compare a.toml b.toml record.csv --units g --scale 1.5 --json"""
 
@@ -56,10 +56,10 @@ def compare(
     language: options.ReportLanguage = None,
     decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
-    out: Annotated[
-        Path | None, options.option("--out -o", "FILE.html", "Write a report on one sheet of A4.", show_default=False)
+    report: Annotated[
+        Path | None, options.option("--report", "FILE.html", "Write a report on one sheet of A4.", show_default=False)
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Let --out replace an earlier report.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier report.")] = False,
     units: options.Units = None,
     dt: options.Dt = None,
     on_error: options.OnError = "raise",
@@ -77,7 +77,7 @@ def compare(
     from rockflex.response import DEMANDS, STATISTICS
     from rockflex.study import compare as run
 
-    page = None if out is None else checked_path_of_report(out, force=force, flag="--out")
+    page = None if report is None else checked_path_of_report(report, force=force)
     written = options.report_format(page, output_units, language, comma=decimal_comma)
     loaded, given, rest = load_alternatives(context, arguments or [], model)
     names = list(loaded)
@@ -108,7 +108,7 @@ def compare(
     else:
         first, *others = names
         head = ["demand", *(["records"] if several else []), *names, *(f"{name} to {first} [%]" for name in others)]
-        units_shown = UnitSystem(output_units or "SI")
+        units_shown = UnitSystem(output_units or "kN")
         rows = [
             [
                 f"{known.compared_as or known.symbol} [{unit or '-'}]",

@@ -84,7 +84,7 @@ def new(
 ) -> None:
     """Put structures, records, options and limits into one file.
 
-    Impact law, hysteresis, ground and head are those of each structure file, unless given by options.
+    Impact law, hysteresis, ground, initial state and head are those of each structure file, unless given by options.
     """
     from rockflex.cli._check import read_limits
     from rockflex.cli._compare import load_alternatives
@@ -98,8 +98,6 @@ def new(
     if target.exists() and not force:
         raise InputError(f"{target} exists. Give another name, or --force to replace it.")
     loaded, given, rest = load_alternatives(context, arguments, model)
-    if given.pop("initial") != dict.fromkeys(loaded):
-        raise InputError("A project starts at rest. Leave --initial-rotation out.")
     if not loaded:
         raise InputError("No structure was given. Give structure files, such as pier.toml, before the ground motions.")
     found = find_motions(rest, units, dt, on_error, vertical)

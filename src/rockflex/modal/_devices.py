@@ -86,7 +86,10 @@ STRANDS: dict[str, Strand] = {
     "A416-270-0.5in": Strand(98.7e-6, 183.7e3, 165.3e3, 196.5e9),
     "A416-270-0.6in": Strand(140e-6, 260.7e3, 234.6e3, 196.5e9),
 }
-"""Strands by name: prEN 10138-3 (2006), nominal diameter in mm; ASTM A416/A416M, low relaxation, Grade 270 [1860]."""
+"""Strands by name: prEN 10138-3 (2006), nominal diameter in mm; ASTM A416/A416M, low relaxation, Grade 270 [1860].
+
+Compared with data sheets of makers of post-tensioning systems, which quote these standards, not with the standards.
+"""
 
 
 @dataclass(frozen=True)
@@ -303,7 +306,8 @@ def u_plate_fuse(
     k = n 16 E b/(27 π) (t/D)³. The outer fibres yield first at 2/3 of F_y, with the stiffness 4 E b/(3 π) (t/D)³ of a
     thin curved beam. k is 4/9 of that: the slope from zero to the curve of an ideally plastic plate at 0.998 F_y, which
     a bilinear law has in its place. The strain of the plate, about t/D, does not grow with the stroke; how many cycles
-    it bears, and where the legs end, is not modelled.
+    it bears, and where the legs end, is not modelled. The formulas are checked by mechanics, not against the text of
+    the papers.
 
     Parameters
     ----------

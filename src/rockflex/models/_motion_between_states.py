@@ -194,9 +194,9 @@ class IntervalsOfPhase:
                 yield self.after(np.arange(self.rows.size), fraction * self.steps)
             return
         for k, terms in enumerate(self.motion.developed(self.z, self.steps, self.shaking)):
-            while done < fractions.size and (fractions[done] * parts <= k + 1 or k == parts - 1):
-                yield series_between_states(terms, fractions[[done]] * parts - k)[0]
-                done += 1
+            end = int(np.searchsorted(fractions * parts, k + 1, side="right")) if k < parts - 1 else fractions.size
+            yield from series_between_states(terms, fractions[done:end] * parts - k)
+            done = end
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,8 +279,7 @@ class MotionBetween:
                 self._known[key] = LinearMotion(model, key, longest)
             motion = self._known[key]
             for apart in (False, True):
-                chosen = found & (shaken == apart) if motion.shaken else found & (not apart)
-                rows = np.flatnonzero(chosen)
+                rows = found[(shaken[found] & motion.shaken) == apart]
                 if rows.size:
                     start = states[rows]
                     moving = start[:, HEADER + motion.columns[:-1]]

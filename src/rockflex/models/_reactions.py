@@ -10,10 +10,12 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
+from rockflex.models._elements import CLOSED
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._state_layout import GROUND, RISE, SIDE
-from rockflex.models._values_at_states import acting_side, observed, rates_at_states, states_by_phase
+from rockflex.models._spring_model import LOADED
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE
+from rockflex.models._values_at_states import acting_side, observed, rates_at_states
 from rockflex.models._vector_fields import field_numbers
 
 
@@ -57,10 +59,11 @@ def spring_forces(model: RockingModel, states: Array) -> Array:
     """Return the force of every spring under the base at the states of a history in N, upwards, (n, n_springs)."""
     if model.springs is None:
         return np.zeros((states.shape[0], 0))
-    found = np.zeros((states.shape[0], model.springs.n))
-    for chosen, key, vector in states_by_phase(model, states, states[:, SIDE]):
-        found[chosen] = model.stretched(vector) @ model.spring_forces(key).T
-    return found
+    layout, side = model.layout, states[:, SIDE]
+    moving = states[:, HEADER : HEADER + layout.moving]
+    vector = model.stretched(np.column_stack((moving, states[:, GROUND], np.ones(side.size))))
+    loaded = model.branches_at(side, layout.of(states, layout.rotation), states)[:, 1 : model.springs.n + 1] == LOADED
+    return np.where(loaded, vector @ model.spring_forces(model.start(CLOSED)).T, 0.0)
 
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:

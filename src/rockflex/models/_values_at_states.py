@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
+from rockflex._arrays import Array
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._phase import Key
@@ -15,6 +15,7 @@ from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._vector_fields import FieldNumbers, field_numbers, field_of
 
+Places = NDArray[np.intp]
 _MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 
 
@@ -104,13 +105,13 @@ def observed(
 
 def vector_fields_at_states(
     model: RockingModel, numbers: FieldNumbers, states: Array, side: Array
-) -> Iterator[tuple[Bools, RockingField | GroundField]]:
-    """Yield a mask of the states of each phase, and its vector field."""
+) -> Iterator[tuple[Places, RockingField | GroundField]]:
+    """Yield the places of the states of each phase, and its vector field."""
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
     for chosen, key in phases_at_states(model, side, layout.of(states, layout.rotation), states):
-        for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
-            if part.any():
+        for branch, part in ((1, chosen[~backwards[chosen]]), (-1, chosen[backwards[chosen]])):
+            if part.size:
                 yield part, field_of(model, numbers, key, branch)
 
 
@@ -133,19 +134,21 @@ def _apart(states: Array) -> tuple[Array, tuple[Array, Array]]:
     return np.ascontiguousarray(states[:, HEADER:]), (states[:, GROUND].copy(), states[:, RISE].copy())
 
 
-def states_by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, Key, Array]]:
-    """Return for each phase a mask of its states, its key, and the vectors that its rows multiply."""
+def states_by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Places, Key, Array]]:
+    """Return for each phase the places of its states, its key, and the vectors that its rows multiply."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
     rotation = model.layout.of(states, model.layout.rotation)
     return [(chosen, key, vector[chosen]) for chosen, key in phases_at_states(model, side, rotation, states)]
 
 
-def phases_at_states(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
-    """Return for each phase a mask of its states, by sides, rotations and internal variables."""
+def phases_at_states(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Places, Key]]:
+    """Return for each phase the places of its states, by sides, rotations and internal variables."""
     branches = model.branches_at(side, rotation, states).astype(np.int64)
     _, first, which = np.unique(_codes(branches), return_index=True, return_inverse=True)
-    return [(which == k, tuple(branches[place].tolist())) for k, place in enumerate(first)]
+    # Divided after one sort: a mask for each phase takes long where a base on many springs has hundreds of them.
+    parts = np.split(np.argsort(which, kind="stable"), np.cumsum(np.bincount(which))[:-1])
+    return [(part, tuple(branches[place].tolist())) for part, place in zip(parts, first, strict=False)]
 
 
 def _codes(rows: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -20,7 +20,7 @@ from rockflex._units import Unit
 from rockflex.modal import RockingProperties, Springs, Tendon
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
-from rockflex.response import History, Response
+from rockflex.response import History, Response, history_of
 
 _MARGIN = 1.12
 _BAR = 0.025  # height of an uplift bar as a share of the panel
@@ -137,12 +137,7 @@ def response_curves(
                 f"responses[{place}] must be a Response, but {type(response).__name__} was given. "
                 'Give what simulate returned, or the column "response" of simulate_many(..., output="history").'
             )
-        if response.history is None:
-            raise InputError(
-                f"responses[{place}] ({response.model} under {shown(response.motion)}) keeps peaks only, but a plot "
-                'needs the history. Simulate it with output="history".'
-            )
-        histories.append(response.history)
+        histories.append(history_of(response, place))
     names, styles = _response_labels(everything, labels), _response_line_styles(histories)
     return [ResponseCurve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
 

@@ -26,6 +26,7 @@ from rockflex.response import CheckLimits, Comparison, RecordSet, Rule, check, c
 from rockflex.study import (
     MAX_ALTERNATIVES,
     WORK_LIMIT,
+    InitialState,
     Motions,
     RockingStructure,
     checked_motions,
@@ -98,8 +99,8 @@ class Project(HtmlTable, Value):
         One record, a sequence, a mapping from names, or a `Selection`, as in `simulate_set`; scaled as they act. Their
         factors are those of `RecordInfo.scale`.
     model : str or mapping
-        A label for all. This and the next three may be mappings from the names of structures, as in `compare`.
-    bouc_wen, impact, ground
+        A label for all. This and the next four may be mappings from the names of structures, as in `compare`.
+    bouc_wen, impact, ground, initial
         As in `simulate_set`; `impact` is one of rockflex's laws, and `ground` a `Ground`.
     rule, periods, free_vibration
         As in `simulate_set`.
@@ -136,6 +137,7 @@ class Project(HtmlTable, Value):
     bouc_wen: Mapping[str, BoucWen]
     impact: Mapping[str, ImpactLaw]
     ground: Mapping[str, Ground]
+    initial: Mapping[str, InitialState]
     rule: Rule | None
     periods: tuple[float, float] | None
     free_vibration: float | Literal["settle"]
@@ -152,6 +154,7 @@ class Project(HtmlTable, Value):
         bouc_wen: BoucWen | Mapping[str, BoucWen] | None = None,
         impact: ImpactLaw | Mapping[str, ImpactLaw] | None = None,
         ground: Ground | Mapping[str, Ground] | None = None,
+        initial: InitialState | Mapping[str, InitialState] | None = None,
         rule: Rule | None = None,
         periods: tuple[float, float] | None = None,
         free_vibration: float | Literal["settle"] = 0.0,
@@ -188,6 +191,7 @@ class Project(HtmlTable, Value):
             bouc_wen=_of_each("bouc_wen", bouc_wen, names, BoucWen),
             impact=_of_each("impact", impact, names, ImpactLaw),
             ground=_of_each("ground", ground, names, Ground),
+            initial=_of_each("initial", initial, names, InitialState),
             rule=checked_rule(rule, len(records)),
             periods=None if periods is None else checked_period_range(periods),
             free_vibration=free_vibration,
@@ -238,6 +242,7 @@ class Project(HtmlTable, Value):
             bouc_wen=self.bouc_wen.get(name),
             impact=self.impact.get(name),
             ground=self.ground.get(name),
+            initial=self.initial.get(name),
             workers=workers,
         )
 
@@ -260,6 +265,7 @@ class Project(HtmlTable, Value):
             free_vibration=self.free_vibration,
             bouc_wen=self.bouc_wen,
             impact=self.impact,
+            initial=self.initial,
             ground=self.ground,
             workers=workers,
             work_limit=work_limit,

@@ -28,6 +28,7 @@ from rockflex.structure.file import (
     parse_toml_table,
     structure_from_table,
 )
+from rockflex.study import InitialState
 
 FORMAT = "rockflex-project-1"
 DOCUMENT = "project.toml"
@@ -41,9 +42,10 @@ TABLES: dict[str, dict[str, type]] = {
 }
 """The tables of results, and columns that each has at least."""
 
-_OPTIONS = ("bouc_wen", "impact", "ground")  # objects of each structure
+_OPTIONS = ("bouc_wen", "impact", "ground", "initial")  # objects of each structure
 _CLASSES: dict[str, type] = {
-    each.__name__: each for each in (BoucWen, CheckLimits, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
+    each.__name__: each
+    for each in (BoucWen, CheckLimits, InitialState, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
 }
 _LAW_NAMES = {"VVELSimplified": "simplified", "VVELComplete": "complete", "Restitution": "restitution"}
 _TABLE = SchemaKey("a table", form=PLAIN)
@@ -60,6 +62,7 @@ class StructureRow(TomlTable):
     bouc_wen: Annotated[dict[str, Any] | None, _TABLE] = None
     impact: Annotated[dict[str, Any] | None, _TABLE] = None
     ground: Annotated[dict[str, Any] | None, _TABLE] = None
+    initial: Annotated[dict[str, Any] | None, _TABLE] = None
 
 
 class RecordRow(TomlTable):

@@ -15,7 +15,7 @@ from rockflex._shown import shown
 from rockflex.motion import MEASURES
 from rockflex.response._export_files import Variable, history_variables, write_matlab, write_netcdf
 from rockflex.response._history import History
-from rockflex.response._response import Response
+from rockflex.response._response import Response, history_of
 from rockflex.response._tables import QUANTITIES, RESULT_UNITS
 
 _EXACT = 2.0**53  # up to which a double holds every whole number
@@ -111,12 +111,7 @@ def _model_and_variables(result: Any, quantities: Sequence[str] | None) -> tuple
     if isinstance(result, pd.DataFrame):
         return None, _columns_of_table(result, quantities)
     if isinstance(result, Response):
-        if result.history is None:
-            raise InputError(
-                'This response contains only peaks. Simulate with output="history", or give a table of runs.',
-                field="result",
-            )
-        result = result.history
+        result = history_of(result)
     if not isinstance(result, History):
         raise InputError(
             f"result must be a Response, a History or a pandas table, but {type(result).__name__} was given.",

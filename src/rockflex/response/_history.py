@@ -260,7 +260,10 @@ class History(Value):
 
     @property
     def floor_acceleration(self) -> Array:
-        """Total horizontal acceleration of each floor, in m/s², shape (n_states, N_floors)."""
+        """Total horizontal acceleration of each floor, in m/s², shape (n_states, N_floors).
+
+        After impacts it has the frequencies of all modes, and its peak grows with their number where masses are small.
+        """
         return self._floors[2]
 
     @property

@@ -18,8 +18,8 @@ from rockflex._values import Value
 from rockflex.modal import YieldingDissipator
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import contact_length
-from rockflex.response._record_set import RecordSet, design_value, history_of
-from rockflex.response._response import Response
+from rockflex.response._record_set import RecordSet, design_value
+from rockflex.response._response import Response, history_of
 
 if TYPE_CHECKING:
     import pandas as pd

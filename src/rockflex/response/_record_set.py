@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -18,9 +19,8 @@ from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion, horizontal_pairs
 from rockflex.response._demands import DEMANDS, ONLY_COMPARED
-from rockflex.response._history import History
 from rockflex.response._quasi_static import static_path
-from rockflex.response._response import Response
+from rockflex.response._response import Response, history_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Rule = Literal["ec8", "asce7", "asce7-ii"]
 MEDIAN, FRACTILE = 0.5, 0.84
-MEDIAN_FACTOR = 1.2  # on the median, where one record may overturn
+MEDIAN_FACTOR = 1.2  # on the median, where one record may overturn; not checked against the standard
 
 
 @dataclass(frozen=True)
@@ -186,6 +186,10 @@ class RecordSet(HtmlTable, Value):
         With floors also `max_story_drift` (m) and `max_floor_acceleration` (m/s²), the largest of all stories and
         floors. Those of an overturned record are the peaks up to its fall.
         """
+        return self._peaks.copy()  # a frame can be changed
+
+    @cached_property
+    def _peaks(self) -> "pd.DataFrame":
         import pandas as pd
 
         rows = [run.peaks() | floor_peaks(run) for run in self.responses]
@@ -200,9 +204,13 @@ class RecordSet(HtmlTable, Value):
         overturned record exceeds every value: with one `mean` is NaN, `worst` and what lies beyond the ranks of the
         others is infinite, and `design` is NaN unless the rule allows it. `reason` tells how `design` was found.
         """
+        return self._statistics.copy()
+
+    @cached_property
+    def _statistics(self) -> "pd.DataFrame":
         import pandas as pd
 
-        peaks, fallen = self.peaks, self.fallen
+        peaks, fallen = self._peaks, self.fallen
         rows: dict[str, dict[str, Any]] = {}
         for name, demand in DEMANDS.items():
             if name in ONLY_COMPARED or name not in peaks or peaks[name].isna().any() or not peaks[name].any():
@@ -298,23 +306,6 @@ class RecordSet(HtmlTable, Value):
                 )
             )
         return tuple(found)
-
-
-def history_of(run: Response) -> History:
-    """Return the history of a run.
-
-    Raises
-    ------
-    InputError
-        If it kept peaks only.
-    """
-    if run.history is None:
-        raise InputError(
-            f"The response to {shown(run.motion)} keeps peaks only, but its history is needed. Simulate it with "
-            'output="history".',
-            field="result",
-        )
-    return run.history
 
 
 def floor_peaks(run: Response) -> dict[str, float]:

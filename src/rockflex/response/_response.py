@@ -13,7 +13,7 @@ from rockflex._errors import InputError, MissingQuantityError
 from rockflex._files import checked_file_path
 from rockflex._html import HtmlTable
 from rockflex._language import translated
-from rockflex._shown import number_with_noun
+from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
@@ -395,3 +395,21 @@ class Response(HtmlTable, Value):
 _SCALARS = (str, float, int, bool)
 KINDS: dict[str, type] = {f.name: f.type for f in fields(Response) if isinstance(f.type, type) and f.type in _SCALARS}
 PEAKS = tuple(KINDS)
+
+
+def history_of(run: Response, place: int | None = None) -> History:
+    """Return the history of a run, which is `result` in messages, or a place in `responses`.
+
+    Raises
+    ------
+    InputError
+        If it kept peaks only.
+    """
+    if run.history is None:
+        name = "result" if place is None else "responses"
+        raise InputError(
+            f"{name if place is None else f'responses[{place}]'} ({run.model} under {shown(run.motion)}) keeps peaks "
+            'only, but its history is needed. Simulate it with output="history".',
+            field=name,
+        )
+    return run.history

@@ -12,10 +12,10 @@ from rockflex.models import parse_model
 from rockflex.project import Project
 from rockflex.report import write_report
 from rockflex.report.run._comparison_page import demand_table
-from rockflex.study import PreparedCase
+from rockflex.study import MAX_ALTERNATIVES, PreparedCase
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import RUN_WORK_LIMIT, check_work_of_runs
-from rockflex.web._refusal import errors_as_refusals
+from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._response import SKETCH_POINTS, response_curves
 from rockflex.web._state import Alternative, PageState, refusals_of_alternative
 from rockflex.web._structure import (
@@ -34,6 +34,8 @@ def alternatives_of_state(state: PageState) -> dict[str, PageState]:
     """
     found = {each.name: state.kept_state(each) for each in state.alternatives}
     if not any(_runs_as(each, state) for each in state.alternatives):
+        if len(found) == MAX_ALTERNATIVES:
+            raise Refusal({"alternatives": f"they are {MAX_ALTERNATIVES + 1} with the present one. Remove one."})
         found[next(letter for letter in ascii_uppercase if letter not in found)] = state
     return found
 
@@ -58,13 +60,15 @@ def project_of_state(state: PageState, uploads: UploadedRecords) -> Project:
             ground, model = ground_under_page_structure(each.ground, built.properties), _model(each)
             options = each.run_options(ground)
             cases.append(options.case(parse_model(model), built.properties, history=True, floors=True))
-            own = (built.structure, model, ground, each.hysteresis(), each.law())
+            yielding = each.hysteresis() if parse_model(model).yields else None
+            own = (built.structure, model, ground, yielding, each.law())
             for part, value in zip(given.values(), own, strict=True):
                 part |= {} if value is None else {name: value}
     check_work_of_runs(cases, motion)
     with errors_as_refusals("alternatives"):
         structures = given.pop("structures")
-        return Project(structures, motion, **given, free_vibration=state.free_vibration, head=state.head_texts())  # pyright: ignore[reportArgumentType]
+        own = {"limits": state.check_limits(), "head": state.head_texts()}
+        return Project(structures, motion, **given, free_vibration=state.free_vibration, **own)  # pyright: ignore[reportArgumentType]
 
 
 def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
@@ -79,14 +83,9 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
     for name, response in zip(kept, comparison.responses, strict=False):  # the present one is the last
         entry = found[name].structure
         built = build_page_structure(entry)
-        ghosts.append(
-            {
-                **structure_outline_view(entry, built),
-                "name": name,
-                "ground": ground_view(project.ground.get(name), built.properties),
-                "models": [response_curves(built, response, None, SKETCH_POINTS)],
-            }
-        )
+        curves, ground = response_curves(built, response, None, SKETCH_POINTS), project.ground.get(name)
+        moving = {"name": name, "models": [curves], "ground": ground_view(ground, built.properties)}
+        ghosts.append(structure_outline_view(entry, built) | moving)
     return as_json_value(
         {
             "heads": [f"{name} [{unit}]" if unit else name for name, unit in table.heads],
@@ -102,5 +101,6 @@ def comparison_report_file(state: PageState, uploads: UploadedRecords, suffix: s
     project = project_of_state(state, uploads)
     with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
-        file = write_report(comparison, Path(folder) / f"comparison{suffix}", units=state.units, **dict(project.head))
+        told: dict[str, Any] = {"units": state.units, "language": state.language, **project.head}
+        file = write_report(comparison, Path(folder) / f"comparison{suffix}", **told)
         return file.name, file.read_bytes()

@@ -21,6 +21,7 @@ from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
+from rockflex._language import CATALOGUES, use_language
 from rockflex._units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
 from rockflex.solve import RunStoppedError, stopping_when
@@ -117,7 +118,8 @@ class PageServer:
 
         async def endpoint(request: Request) -> Response:
             state, content = await _state_and_content(request)
-            return JSONResponse(await self.run(request, lambda: work(state, content), most))
+            with use_language(state.language):
+                return JSONResponse(await self.run(request, lambda: work(state, content), most))
 
         return endpoint
 
@@ -184,22 +186,24 @@ class PageServer:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
-        return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
+        with use_language(state.language):
+            return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Start to make the table or the figure of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return self._making(lambda _: study_file(PAGES[kind], job, state, what))
+        return self._making(lambda _: study_file(PAGES[kind], job, state, what), state)
 
     async def make(self, request: Request) -> Response:
         """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
-        return self._making(file_maker(state, request.path_params["what"], self.uploads))
+        return self._making(file_maker(state, request.path_params["what"], self.uploads), state)
 
-    def _making(self, make: Callable[[Progress], tuple[str, bytes]]) -> Response:
-        return JSONResponse({"token": self.files.start(BackgroundFileJob(make))})
+    def _making(self, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
+        in_language = use_language(state.language)(make)
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(in_language))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -359,6 +363,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/file/{token}", server.making),
         Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
+        Mount("/languages", StaticFiles(directory=CATALOGUES)),
     ]
     handlers: dict[Any, Any] = {
         Refusal: _answer_to_refusal,

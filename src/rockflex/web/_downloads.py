@@ -3,10 +3,11 @@
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
+from rockflex._language import translated
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
 from rockflex.report.run import run_report_as_html
@@ -41,14 +42,18 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
     built, acting, found = simulate_state_models(state, uploads)
     motion = chosen_motion(state.record, uploads)
     times = "" if state.scale == 1.0 else f" × {state.scale:g}"
-    name = state.structure.name or "Structure"
+    record = f"{motion.name or translated('a ground motion')}{times}"
+    name = state.structure.name or translated("Structure")
+    usual = translated("{structure} under {record}", structure=name, record=record)
+    head: dict[str, Any] = {"title": usual, **state.head_texts()}
     with errors_as_refusals("models"):
         text = run_report_as_html(
             found,
             structure=built.structure,
             motion=motion,
             units=state.units,
-            **{"title": f"{name} under {motion.name or 'a ground motion'}{times}"} | state.head_texts(),
+            language=state.language,
+            **head,
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
             limits=state.check_limits(),
         )

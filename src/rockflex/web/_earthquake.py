@@ -129,17 +129,17 @@ def record_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
     spectrum = motion.spectrum(PERIODS)
     known = record_measures() + (vertical_measures() if upwards else [])
     measures: list[dict[str, Any]] = [
-        *(_measure_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in known),
+        *(_measure_fact(measure, measure.of(MeasureInput(motion))) for measure in known),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
     first = None
     if built is not None and built.properties.n_modes:
         first = 2.0 * np.pi / float(built.properties.omega[0])
-        zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
+        zeta = float(built.properties.zeta[0])
         measures += [
-            _measure_fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
-            _measure_fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
+            _measure_fact(MEASURES["sa_t1"], motion.sa(first, zeta)),
+            _measure_fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05)),
         ]
     return as_json_value(
         {
@@ -159,8 +159,8 @@ def record_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
     )
 
 
-def _measure_fact(measure: IntensityMeasure, value: float, words: str) -> dict[str, Any]:
-    return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
+def _measure_fact(measure: IntensityMeasure, value: float) -> dict[str, Any]:
+    return {"name": measure.head, "value": value, "unit": measure.unit, "help": measure.words}
 
 
 def _record_title(motion: GroundMotion) -> str:

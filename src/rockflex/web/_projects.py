@@ -67,8 +67,7 @@ def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]
         raise Refusal({FIELD: "it is nested too deep to be read."}) from error
     except (InputError, Refusal) as error:
         raise Refusal({FIELD: str(error)}) from error
-    left = {"limits of checks": document.limits, "the rule of a set": document.rule, "results": document.results}
-    return {"state": json.loads(_json(state)), "left": [name for name, given in left.items() if given]}
+    return {"state": json.loads(_json(state)), "left": ["results"] if document.results else []}
 
 
 def _state_of_document(members: Mapping[str, bytes], document: ProjectDocument) -> dict[str, Any]:
@@ -77,7 +76,8 @@ def _state_of_document(members: Mapping[str, bytes], document: ProjectDocument) 
     free = MAX_FREE_VIBRATION if document.free_vibration == "settle" else document.free_vibration
     head = {name: text for name, text in document.head.items() if name != "date"}
     first = {name: value for name, value in kept[0].items() if name != "name"}
-    return {**first, "alternatives": kept, "free_vibration": free, "head": head}
+    own = {"limits": document.limits, "record_set": {"rule": document.rule or ""}}
+    return {**first, **own, "alternatives": kept, "free_vibration": free, "head": head}
 
 
 def _record(members: Mapping[str, bytes], rows: Sequence[RecordRow], uploads: UploadedRecords) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._json import as_json_value
+from rockflex._language import translated
 from rockflex._units import UnitSystem
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -86,7 +87,7 @@ class RecordSetJob(RunsJob):
             _ = found[-1].warnings  # its energies, which the response then has
             check(found[-1], study.state.check_limits(friction=study.friction))
             self.runs += 1
-        given = {"properties": study.built.properties, "rule": None, "periods": study.periods}
+        given: dict[str, Any] = {"properties": study.built.properties, "rule": None, "periods": study.periods}
         _SETS.put(self.key, RecordSet(responses=tuple(found), motions=study.motions, **given))
 
 
@@ -143,12 +144,15 @@ def _record_set_figure(job: RecordSetJob, state: PageState) -> Any:
 
 def _record_set_report(job: RecordSetJob, state: PageState) -> str:
     found, study = _set_of_job(job, state), job.study
-    name = study.state.structure.name or "Structure"
+    name, n = study.state.structure.name or translated("Structure"), len(found.responses)
     return run_report_as_html(
         found,
         structure=study.built.structure,
         units=state.units,
-        title=f"{name} under {len(found.responses)} records",
+        language=state.language,
+        title=translated(
+            "{structure} under {n} record" if n == 1 else "{structure} under {n} records", structure=name, n=n
+        ),
         limits=state.check_limits(friction=study.friction),
     )
 

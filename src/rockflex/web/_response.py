@@ -6,7 +6,6 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
@@ -92,10 +91,8 @@ def simulate_state_models(
     """Simulate the models of a state."""
     built = build_page_structure(state.structure)
     motion = chosen_motion(state.record, uploads).scaled(state.scale)
-    options, cases = (
-        state.run_options(ground_under_page_structure(state.ground, built.properties)),
-        dict[str, PreparedCase](),
-    )
+    options = state.run_options(ground_under_page_structure(state.ground, built.properties))
+    cases = dict[str, PreparedCase]()
     for label in state.models:
         with errors_as_refusals("models", f"{label}: "):
             cases[label] = options.case(parse_model(label), built.properties, history=True, floors=True)
@@ -222,16 +219,15 @@ def response_curves(
         curves["element_force"] = history.element_force[:, element]
         curves["element_elongation"] = history.element_elongation[:, element]
         points *= 2  # loops need more points than curves over time
-    kept = _thinned_history_nodes(history, list(curves.values()), points)
+    events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
+    kept = np.unique(np.concatenate((envelope_indices(list(curves.values()), points), events, events + 1)))
     modal = history.modal_displacement[kept]
     drawn = modal @ built.shapes[:, : modal.shape[1]].T
     return {
         "label": response.model,
         "status": response.status,
         "peaks": response.peaks(),
-        "warnings": warnings_of_response(
-            response.model, response.peaks()
-        ),  # the energies of one model only are computed
+        "warnings": warnings_of_response(response.model, response.peaks()),  # `response_view` adds one of energies
         "lifts": history.model.lifts,
         "fall_time": _overturning_time(history),
         "impact_times": history.impact_times[:MAX_EVENT_NODES],
@@ -255,13 +251,6 @@ def base_motion_curves(history: History) -> dict[str, Array]:
         left, right = history.edge_uplift.T
         curves |= {"heave": history.heave, "left_edge": left, "right_edge": right}
     return curves
-
-
-def _thinned_history_nodes(history: History, curves: list[Array], points: int) -> NDArray[np.intp]:
-    """Return the nodes that are sent: the extremes of every interval, and both sides of the events."""
-    kept = envelope_indices(curves, points)
-    events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
-    return np.unique(np.concatenate((kept, events, events + 1)))
 
 
 def _overturning_time(history: History) -> float | None:

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, Val
 from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
+from rockflex._language import Language
 from rockflex._units import SystemName
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
@@ -273,6 +274,7 @@ class PageState(RunOptionKeys):
         "structure", description="the name of a tab"
     )
     units: SystemName = Field("kN", description='"kN", "MN", "SI" or "kip-in"')
+    language: Language = Field("en", description='"en", "de", "it", "fr" or "es"')
     structure: StructureEntry = Field(description="a table")
     record: RecordChoice = Field(default_factory=lambda: RecordChoice.model_validate({}), description="a table")
     scale: Scale = 1.0

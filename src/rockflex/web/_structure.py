@@ -45,19 +45,17 @@ def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] |
     ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * p.m_tot)
     return view | {
         "springs": springs.positions[kept],
-        "settlement": settlement,
         "facts": [
-            _fact_about_ground("w", settlement, "m", "settlement of the axis under the weight")
-            | {"quantity": "displacement"},
-            _fact_about_ground("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
-            _fact_about_ground("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
-            _fact_about_ground("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),
-            _fact_about_ground("I_b", ground.base_inertia, "kg m²", "rotary inertia of base and floors"),
+            _fact("w", settlement, "m", "settlement of the axis under the weight") | {"quantity": "displacement"},
+            _fact("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
+            _fact("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
+            _fact("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),
+            _fact("I_b", ground.base_inertia, "kg m²", "rotary inertia of base and floors"),
         ],
     }
 
 
-def _fact_about_ground(symbol: str, value: float | None, unit: str, said: str) -> dict[str, Any]:
+def _fact(symbol: str, value: float | None, unit: str, said: str) -> dict[str, Any]:
     return {"symbol": symbol, "value": value, "unit": unit, "help": said}
 
 
@@ -67,13 +65,12 @@ def section_facts(table: TomlTable) -> list[dict[str, Any]]:
     if given is None:
         return []
     section = given.build()
-    composite = given.shape == "composite"
-    of_first = ", in the material of the first part" if composite else ""
+    one = given.shape != "composite"
     return [
-        {"symbol": "A", "value": section.area, "unit": "m²", "help": f"area{of_first}"},
-        {"symbol": "I", "value": section.second_moment, "unit": "m⁴", "help": f"second moment of area{of_first}"},
-        {"symbol": "EI", "value": section.bending_stiffness, "unit": "N m²", "help": "effective bending stiffness"},
-        {"symbol": "m", "value": section.mass_per_length, "unit": "kg/m", "help": "mass per metre of height"},
+        _fact("A", section.area, "m²", "area" if one else "area, in the material of the first part"),
+        _fact("I", section.second_moment, "m⁴", "second moment of area" if one else "second moment of area, likewise"),
+        _fact("EI", section.bending_stiffness, "N m²", "effective bending stiffness"),
+        _fact("m", section.mass_per_length, "kg/m", "mass per metre of height"),
     ]
 
 
@@ -199,40 +196,37 @@ def _mode_adequacy_view(entry: StructureEntry, p: RockingProperties) -> dict[str
 
 def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:
     """Return the parameters with symbols, units and meaning, for each edge of the base where the two differ."""
-    moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
-    told = f"mass that stands on other columns; {p.weight_share:.0%} of the weight is on the base"
-    leaning = {"symbol": "Σ l", "value": p.leaning_mass, "unit": "kg", "help": told}
+    moved = _fact("e", p.eccentricity, "m", "masses to the right of the base's middle")
+    leaning = _fact("Σ l", p.leaning_mass, "kg", "mass on other columns; {share} % of the weight is on the base")
     base = [
-        {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
+        _fact("B", p.half_width, "m", "half the width of the base"),
         *([moved] if p.eccentricity else []),
-        {"symbol": "m_tot", "value": p.m_tot, "unit": "kg", "help": "total mass with the base"},
-        *([leaning] if p.leaning_mass else []),
+        _fact("m_tot", p.m_tot, "kg", "total mass with the base"),
+        *([leaning | {"share": round(100 * p.weight_share)}] if p.leaning_mass else []),
     ]
-    arm = {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"}
+    arm = _fact("L₀ʳ", p.l0r, "kg m", "sum of mass times height")
     if p.symmetric:
-        lifting, *rest = _pivot_parameter_facts(p, p.pivot(1), "")
+        lifting, *rest = _pivot_parameter_facts(p, p.pivot(1))
         return [*base, lifting, arm, *rest]
-    edges = {1: "to the right: ", -1: "to the left: "}
-    return [*base, arm, *(each for pivot in p.pivots for each in _pivot_parameter_facts(p, pivot, edges[pivot.side]))]
+    return [*base, arm, *(each for pivot in p.pivots for each in _pivot_parameter_facts(p, pivot))]
 
 
-def _pivot_parameter_facts(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
+def _pivot_parameter_facts(p: RockingProperties, pivot: Pivot) -> list[dict[str, Any]]:
     alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
-    nominal = pivot.nominal_overturning_rotation
-    limit = "nominal limit 0.7 atan(B/h*₁)" if p.symmetric else "nominal limit 0.7 atan(b/h*₁), b to this edge"
-    said = [
-        ("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
-        ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
-        ("a_lift", pivot.uplift_acceleration, "m/s²", "slow ground acceleration that lifts the base"),
-        ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
-        *([("λ", pivot.recentring_ratio, "", RECENTRING_HELP)] if pivot.dissipator_moment > 0.0 else []),
-        ("θ_nom", nominal, "rad", limit),
+    limit = pivot.nominal_overturning_rotation
+    facts = [
+        _fact("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
+        _fact("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
+        _fact("a_lift", pivot.uplift_acceleration, "m/s²", "slow ground acceleration that lifts the base"),
+        _fact("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
+        *([_fact("λ", pivot.recentring_ratio, "", RECENTRING_HELP)] if pivot.dissipator_moment > 0.0 else []),
+        _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(B/h*₁)")
+        if p.symmetric
+        else _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(b/h*₁), b to this edge"),
     ]
-    return [
-        {"symbol": symbol, "value": value, "unit": unit, "help": about + text}
-        | ({"none": "the tendons always bring it back"} if value is None else {})
-        for symbol, value, unit, text in said
-    ]
+    none = {"none": "the tendons always bring it back"}
+    edge = {} if p.symmetric else {"edge": pivot.side}
+    return [fact | edge | (none if fact["value"] is None else {}) for fact in facts]
 
 
 def _mode_facts(built: BuiltStructure) -> list[dict[str, Any]]:

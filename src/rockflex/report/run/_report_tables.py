@@ -28,7 +28,7 @@ from rockflex.modal import (
     element_parameters,
     uplifted_modes,
 )
-from rockflex.models import Restitution, SidedRestitution
+from rockflex.models import Restitution, SidedRestitution, VVELComplete, VVELSimplified
 from rockflex.motion import GroundMotion
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import History, Response
@@ -329,6 +329,10 @@ def _impact_law_text(law: Any) -> str:
         return translated(
             "Restitution, e = {right} from the right and {left} from the left edge", right=right, left=left
         )
+    if isinstance(law, VVELSimplified):
+        return translated("Simplified (Silva & Stojadinović 2024, Eq. 25)")
+    if isinstance(law, VVELComplete):
+        return translated("Complete (Silva & Stojadinović 2024, Eq. 29)")
     return getattr(law, "description", type(law).__name__)
 
 

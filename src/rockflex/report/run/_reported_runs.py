@@ -13,7 +13,7 @@ from rockflex._shown import shown
 from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
-from rockflex.response import History, Response
+from rockflex.response import History, Response, history_of
 from rockflex.structure import structure_warnings
 
 MAX_RUNS = 6  # runs, for which a page has room
@@ -41,7 +41,7 @@ def checked_reported_runs(
 ) -> ReportedRuns:
     """Check the input of a report."""
     runs = _checked_responses(responses)
-    histories = tuple(_history_of_run(place, run) for place, run in enumerate(runs))
+    histories = tuple(history_of(run, place) for place, run in enumerate(runs))
     differing = _differing_ground_motions_text([run.motion for run in runs], histories)
     if differing:
         raise InputError(
@@ -80,16 +80,6 @@ def _checked_responses(responses: Any) -> tuple[Response, ...]:
             field="responses",
         )
     return runs
-
-
-def _history_of_run(place: int, run: Response) -> History:
-    if run.history is None:
-        raise InputError(
-            f"responses[{place}] ({run.model} under {shown(run.motion)}) keeps peaks only, but a report draws the "
-            'history. Simulate it with output="history".',
-            field="responses",
-        )
-    return run.history
 
 
 def _differing_ground_motions_text(motions: list[str], histories: tuple[History, ...]) -> str:

@@ -180,8 +180,12 @@ def page_as_html(page: ReportPage, figures: Figures) -> str:
     }
     templates = jinja_templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
-    templates.globals["t"] = translated
-    given = {"language": chosen_language()[0], "max_letters": MAX_LETTERS, "drawings": drawings}
+    given: dict[str, Any] = {
+        "t": translated,
+        "language": chosen_language()[0],
+        "max_letters": MAX_LETTERS,
+        "drawings": drawings,
+    }
     return templates.get_template(page.template).render(page=page, **given)
 
 

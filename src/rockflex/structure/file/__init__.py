@@ -1,5 +1,6 @@
 """Structures in TOML files."""
 
+from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import (
     CLASS,
     arguments_in_table,
@@ -14,7 +15,6 @@ from rockflex.structure.file._structure_entry import (
     StructureEntry,
     TendonTable,
     build_structure_in_file,
-    entry_of_object_table,
     read_structure,
     read_toml_file,
 )

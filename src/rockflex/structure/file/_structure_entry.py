@@ -1,8 +1,7 @@
 """A structure in a TOML file: leaning mass, stories that yield, its place on the base, and its elements."""
 
-import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, Union, get_origin, get_type_hints
@@ -13,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
 from rockflex._registry import registered_objects, source_checksum
 from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
-from rockflex._shown import shortened, shown
+from rockflex._shown import shortened
 from rockflex.modal import (
     BARS,
     PLACE,
@@ -33,9 +32,8 @@ from rockflex.modal import (
 from rockflex.structure import Eccentric, Leaning, Restrained, YieldingStories
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._structure import Structure
-from rockflex.structure.file._object_tables import CLASS, arguments_in_table, structure_from_table
+from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_tables import (
-    PROFILES,
     BeamTable,
     Built,
     CantileverTable,
@@ -497,69 +495,6 @@ KINDS: dict[str, type[StructureTable]] = {
     if issubclass(table := first_table_in_annotation(field.annotation) or TomlTable, StructureTable)
 }
 """The table of each kind of structure by its name in a file."""
-
-
-_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "YieldingStories")
-
-
-def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
-    """Return the content of a `StructureEntry` for the table of an object; nothing is built, and no value is checked.
-
-    Cross-sections and devices are numbers then, and floors of `RockingProperties` are left out. `place` names the table
-    in messages.
-
-    Raises
-    ------
-    InputError
-        If no kind of structure or element makes the class.
-    """
-    try:
-        return _entry_of_object_table(table)
-    except (AttributeError, KeyError, TypeError, ValueError, ZeroDivisionError) as error:
-        raise InputError(
-            f"{place}: no kind of structure in a file is {shown(table)}. Read it with read_structure or read_project."
-        ) from error
-
-
-def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
-    name: str = table[CLASS]
-    inner = _entry_of_object_table(table["structure"]) if name in _WRAPPERS else {}
-    rest: dict[str, Any] = arguments_in_table({key: each for key, each in table.items() if key != "structure"})
-    rest.pop("elements", None)
-    held = [{"kind": _kind_made(ELEMENTS, each), **arguments_in_table(each)} for each in table.get("elements", [])]
-    if elements := [*inner.pop("elements", []), *held]:
-        inner["elements"] = elements
-    if eccentricity := rest.pop("eccentricity", 0.0):
-        inner["eccentricity"] = eccentricity
-    if name == "Leaning":
-        inner["leaning_masses"] = rest["masses"]
-    elif name == "YieldingStories":
-        inner["stories"] = rest
-    elif name == "RockingProperties" and not rest["omega"]:
-        inner["block"] = _block_of_properties(rest)
-    elif name not in _WRAPPERS:
-        if "bending_stiffness" in rest:
-            rest.pop("section", None)  # which gave stiffness and mass
-        for key in PROFILES if name == "Beam" else ():
-            if isinstance(rest.get(key), list):  # of heights and of values there
-                z, rest[key] = rest[key]
-                if rest.setdefault("z", z) != z:
-                    raise ValueError("a beam whose quantities vary at other heights each")
-        left = ("floors", *([] if rest.get("stories") else ["stories"]))
-        inner[_kind_made(KINDS, table)] = {key: each for key, each in rest.items() if key not in left}
-    return inner
-
-
-def _kind_made(tables: Mapping[str, Any], table: dict[str, Any]) -> str:
-    return {getattr(each.makes, "__name__", ""): kind for kind, each in tables.items()}[table[CLASS]]
-
-
-def _block_of_properties(given: dict[str, Any]) -> dict[str, float]:
-    half, height, mass = given["half_width"], given["l0r"] / given["m_tot"], given["m_tot"]
-    diagonal = math.hypot(half, height)
-    if not math.isclose(given["i_theta"], 4.0 / 3.0 * mass * diagonal**2, rel_tol=1e-9):
-        raise ValueError("a body without modes that is no homogeneous block")
-    return {"slenderness": math.atan2(half, height), "half_diagonal": diagonal, "mass": mass}
 
 
 def read_structure(path: str | Path) -> Built:

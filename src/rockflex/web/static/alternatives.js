@@ -5,11 +5,11 @@ import { clone, decode, h, latest, scrolled, symbol, tableOf } from "./dom.js";
 import { trouble } from "./form.js";
 import { downloads } from "./jobs.js";
 import { legend } from "./marks.js";
-import { t } from "./texts.js";
+import { t, written } from "./texts.js";
 
 const OWN = ["structure", "models", "impact", "restitution", "bouc_wen", "ground"]; // what an alternative is made of
 const WORDS = ["label", "status"]; // of a response, whose other texts are curves
-const LOOKS = ["yielded", "fuse", "damper", "clay", "tendons", "soil"].map((color, i) => ({ color, dash: [[5, 2], [1, 2], [9, 3]][i % 3] }));
+const LOOKS = ["yielded", "fuse", "damper", "clay", "kinetic", "soil"].map((color, i) => ({ color, dash: [[5, 2], [1, 2], [9, 3]][i % 3] }));
 const own = (from) => clone(Object.fromEntries(OWN.filter((name) => from[name] !== undefined).map((name) => [name, from[name]])));
 
 // The name of the next one.
@@ -18,10 +18,9 @@ const free = (kept) => [..."ABCDEFG"].find((letter) => kept.every(({ name }) => 
 // `show` gets the responses of the kept ones, each with its structure and its look.
 export function alternatives(app, show) {
   const { alternatives: most } = app.about.limits;
-  const keep = h("button", { type: "button", id: "keep", onclick: () => {
-    const { alternatives: kept } = app.state;
-    put([...kept, { name: free(kept), ...own(app.state) }]);
-  } });
+  const put = (kept) => app.change({ alternatives: kept });
+  const add = () => put([...app.state.alternatives, { name: free(app.state.alternatives), ...own(app.state) }]);
+  const keep = h("button", { type: "button", id: "keep", onclick: add });
   const list = h("ul", { class: "kept" });
   const table = scrolled(t("Demands of the alternatives"), { id: "differences" });
   const hint = h("p", { class: "hint" });
@@ -31,8 +30,6 @@ export function alternatives(app, show) {
   element.append(h("h2", {}, t("Alternatives")),
     h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), table, hint, reports);
   let shown = ""; // what determines the table that is shown
-
-  const put = (kept) => app.change({ alternatives: kept });
 
   function rename(i, input) {
     const name = input.value.trim();
@@ -79,7 +76,7 @@ export function alternatives(app, show) {
       m.label = each.name;
       m.look = LOOKS[kept.findIndex(({ name }) => name === each.name)];
     }
-    const cell = ({ text, value }) => h("td", { "data-value": value }, text);
+    const cell = ({ text, value }) => h("td", { "data-value": value }, written(text));
     table.hidden = reports.hidden = !answer.rows.length;
     table.replaceChildren(answer.rows.length ? tableOf(answer.heads, answer.rows.map(([first, ...others]) => (
       h("tr", {}, h("th", { scope: "row" }, symbol(first.text)), others.map(cell))))) : "");
@@ -93,9 +90,13 @@ export function alternatives(app, show) {
     const { alternatives: kept } = app.state;
     keep.textContent = t("Keep as {name}", { name: free(kept) });
     keep.disabled = kept.length >= most - 1; // the present one is compared too
-    if (list.dataset.drawn !== JSON.stringify(kept)) {
-      list.dataset.drawn = JSON.stringify(kept);
+    const key = JSON.stringify([kept, document.documentElement.dataset.theme]);
+    if (list.dataset.drawn !== key) {
+      list.dataset.drawn = key;
+      const controls = () => [...list.querySelectorAll("input, button")];
+      const at = controls().indexOf(document.activeElement);
       list.replaceChildren(...kept.map(row));
+      controls()[at]?.focus();
     }
     load();
   }

@@ -1,5 +1,7 @@
 // Requests to the server. A refusal has messages by the path of the field at fault.
 
+import { t } from "./texts.js";
+
 export class Refusal extends Error {
   constructor(errors, status) {
     super(Object.values(errors).join(" "));
@@ -21,7 +23,7 @@ export async function attempt(work, refused) {
 async function checked(response) {
   if (response.ok) return response;
   const { errors } = await response.json().catch(() => ({})); // a proxy's page is not JSON
-  throw new Refusal(errors ?? { "": `The server responded with status ${response.status}.` }, response.status);
+  throw new Refusal(errors ?? { "": t("The server responded with status {status}.", { status: response.status }) }, response.status);
 }
 
 async function request(path, options) {
@@ -30,7 +32,7 @@ async function request(path, options) {
     response = await fetch(path, options);
   } catch (error) {
     if (error.name === "AbortError") throw new Refusal({}, 0); // replaced by a later request
-    throw new Refusal({ "": "The server does not respond. Is rockflex serve still running?" }, 0);
+    throw new Refusal({ "": t("The server does not respond. Is rockflex serve still running?") }, 0);
   }
   return checked(response);
 }

@@ -14,8 +14,8 @@ export class Chart {
     this.over = h("canvas", { class: "over", "aria-hidden": "true" });
     this.said = h("p", { class: "hidden", "aria-live": "polite" });
     this.element = h("div", {
-      class: "chart", tabindex: 0, role: "application", "aria-roledescription": "chart",
-      "aria-label": options.label ?? "chart", "aria-keyshortcuts": KEYS,
+      class: "chart", tabindex: 0, role: "application", "aria-roledescription": t("chart"),
+      "aria-label": options.label, "aria-keyshortcuts": KEYS,
       onkeydown: (event) => this.#key(event), onblur: () => this.#leave(),
     }, this.base, this.over, this.said);
     this.data = { series: [] };

@@ -36,16 +36,16 @@ export function checksTable({ rows, missing, unlimited }, of) {
   return h("section", { class: "checks" },
     h("h2", {}, t("Checks of {what}", { what: of })),
     scrolled(t("Checks"), {}, tableOf(head, rows.map(row))),
-    unlimited.length ? h("p", { class: "hint" }, t("Without a limit: {names}. Give one under “Limits of the checks”.", { names: unlimited.join(", ") })) : null,
-    missing.map(([name, lacks]) => h("p", { class: "hint" }, t("Not checked: {name}: {reason}.", { name, reason: lacks }))));
+    unlimited.length ? h("p", { class: "hint" }, t("Without a limit: {names}. Give one under “Limits of the checks”.", { names: unlimited.map((name) => t(name)).join(", ") })) : null,
+    missing.map(([name, lacks]) => h("p", { class: "hint" }, t("Not checked: {name}: {reason}.", { name: t(name), reason: lacks }))));
 }
 
 function row(each) {
   const verdict = { true: t("ok"), false: t("fails") }[each.ok] ?? "–";
   const value = (x) => (x === null ? "–" : `${number(x)} ${each.unit}`.trim());
-  const source = each.source === "user" ? t("given here") : each.source || each.note.split("; ")[0];
+  const source = each.source === "user" ? t("given here") : t(each.source) || each.note.split("; ")[0];
   return h("tr", { "data-check": each.name },
-    h("th", { scope: "row" }, each.name),
+    h("th", { scope: "row" }, t(each.name)),
     h("td", { "data-name": "ok", class: each.ok === false ? "overturned" : null }, verdict),
     h("td", { "data-name": "demand", "data-value": each.value }, value(each.demand)),
     h("td", {}, (each.at_least ? "≥ " : "") + value(each.limit)),

@@ -2,22 +2,23 @@
 
 import { clone, h } from "./dom.js";
 import { trouble } from "./form.js";
+import { t } from "./texts.js";
 import { unitFor } from "./units.js";
 
 const MODELS = [
-  ["MDOF-S", "all modes, small rotations"],
-  ["2DOF-S", "first mode, small rotations"],
-  ["3DOF-S", "two modes, small rotations"],
-  ["2DOF-S-R", "first mode; its forces include the mass of the other modes"],
-  ["2DOF-C", "first mode, large rotations"],
-  ["MDOF-C-SI", "all modes, large rotations"],
-  ["rigid", "no modes: a rigid block"],
-  ["fixed", "all modes, base held down"],
+  ["MDOF-S", t("all modes, small rotations")],
+  ["2DOF-S", t("first mode, small rotations")],
+  ["3DOF-S", t("two modes, small rotations")],
+  ["2DOF-S-R", t("first mode; its forces include the mass of the other modes")],
+  ["2DOF-C", t("first mode, large rotations")],
+  ["MDOF-C-SI", t("all modes, large rotations")],
+  ["rigid", t("no modes: a rigid block")],
+  ["fixed", t("all modes, base held down")],
 ];
 const YIELDING = [
-  ["2DOF-S-BW", "first mode, which yields; small rotations"],
-  ["2DOF-C-BW", "first mode, which yields; large rotations"],
-  ["1DOF-fixed-BW", "first mode, which yields; base held down"],
+  ["2DOF-S-BW", t("first mode, which yields; small rotations")],
+  ["2DOF-C-BW", t("first mode, which yields; large rotations")],
+  ["1DOF-fixed-BW", t("first mode, which yields; base held down")],
 ];
 
 // The label of a model with its words, where it has some.
@@ -34,9 +35,9 @@ export const yields = (label) => label.includes("-BW");
 export function models(path, chosen, most, change) {
   let now = clone(chosen);
   let offered = MODELS;
-  const chips = h("div", { class: "chips models", role: "group", "aria-label": "Models" });
+  const chips = h("div", { class: "chips models", role: "group", "aria-label": t("Models") });
   const other = h("input", {
-    type: "text", placeholder: "another, e.g. 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
+    type: "text", placeholder: t("another, e.g. 4DOF-S or 3DOF-S-R"), "aria-label": t("Another model"), maxlength: 30,
     onchange: () => {
       const label = other.value.trim();
       other.value = "";
@@ -70,7 +71,7 @@ export function models(path, chosen, most, change) {
 
   draw();
   const element = h("div", { class: "field", "data-path": path },
-    h("div", { class: "label" }, `Models (up to ${most})`), chips, other, trouble());
+    h("div", { class: "label" }, t("Models (up to {most})", { most })), chips, other, trouble());
   // The chosen models, and whether yielding models are offered too.
   element.setValue = (value, yielding = false) => {
     now = clone(value);
@@ -86,7 +87,7 @@ export function models(path, chosen, most, change) {
 // Values and titles for a list; the search for a width excludes measures that depend on the base.
 export function measuresOf(about, ofBase) {
   const offered = about.measures.filter((each) => ofBase || !each.of_base);
-  return offered.map((each) => [each.name, each.title]);
+  return offered.map((each) => [each.name, t(each.title)]);
 }
 
 const named = (about, name) => about.measures.find((each) => each.name === name);
@@ -107,7 +108,7 @@ export const CHOSEN = "chosen"; // and the records for the target spectrum
 export function suitesOf({ about, state }, chosen = [], forTarget = false) {
   const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
   const own = [];
-  if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, "your folder"]);
-  if (!forTarget && (state.target.shown || state.record_set.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, "records for the target"]);
+  if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, t("your folder")]);
+  if (!forTarget && (state.target.shown || state.record_set.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, t("records for the target")]);
   return [...many, ...own];
 }

@@ -1,5 +1,7 @@
 // Elements, numbers, canvases and small tools that every tab uses, and how a tab is printed.
 
+import { t, written } from "./texts.js";
+
 const PAPER = 3; // pixels of a canvas for each CSS pixel of a sheet
 
 export function h(tag, attributes = {}, ...children) {
@@ -22,9 +24,6 @@ export function svg(tag, attributes = {}, ...children) {
   return element;
 }
 
-// A number with its noun: 1 record, 2 records.
-export const counted = (n, one, several = `${one}s`) => `${n} ${n === 1 ? one : several}`;
-
 export function number(value, digits = 4) {
   if (value === null || value === undefined || value === "") return "–";
   const x = Number(value);
@@ -33,9 +32,9 @@ export function number(value, digits = 4) {
   const size = Math.abs(x);
   if (size >= 1e6 || size < 1e-4) {
     const [mantissa, exponent] = x.toExponential(digits - 1).split("e");
-    return `${trim(mantissa)}·10${superscript(Number(exponent))}`.replace("-", "−");
+    return written(`${trim(mantissa)}·10${superscript(Number(exponent))}`);
   }
-  return String(Number(x.toPrecision(digits))).replace("-", "−");
+  return written(String(Number(x.toPrecision(digits))));
 }
 
 function trim(text) {
@@ -108,7 +107,7 @@ export function save(name, blob) {
 // The message about a file that is too large; empty if it is not.
 export function tooLarge({ name, size }, most) {
   if (size <= most) return "";
-  return `${name} has ${(size / 1e6).toFixed(1)} MB, but the page takes ${most / 1e6} MB at most.`;
+  return t("{name} has {size} MB, but the page takes {most} MB at most.", { name, size: written((size / 1e6).toFixed(1)), most: most / 1e6 });
 }
 
 // A table with a heading for each column.

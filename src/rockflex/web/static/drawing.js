@@ -13,8 +13,9 @@ export const isTendon = (kind) => colorOf(kind) === "tendons";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {
-  const title = `${place + 1}: ${about.elements[each.kind].title}`;
-  if (each.between?.length === 2) return `${title}, floors ${each.between.join(" to ")}`;
+  const title = `${place + 1}: ${t(about.elements[each.kind].title)}`;
+  const [low, high] = each.between ?? [];
+  if (each.between?.length === 2) return t("{element}, floors {low} to {high}", { element: title, low, high });
   if (each.height) return t("{element}, tie at {height}", { element: title, height: inUnit(each.height, "length") });
   return t("{element} at {position}", { element: title, position: inUnit(each.position ?? 0, "length") });
 }

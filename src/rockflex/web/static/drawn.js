@@ -59,17 +59,17 @@ function handles(app, view, wanted) {
   const stood = springs ? (springs.positions ?? within) : [];
   const reach = Math.max(0, ...[...places, ...(springs?.positions ?? [])].map((x) => Math.abs(x + e)));
   const found = [];
-  if (B) found.push({ name: "B", label: "Half width of the base", value: wanted.B ?? B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
+  if (B) found.push({ name: "B", label: t("Half width of the base"), value: wanted.B ?? B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
     at: [(wanted.B ?? b) - e, 0],
     next: (v) => ({ structure: B.set(v) }) });
-  if (H) found.push({ name: "H", label: "Height", up: true, value: wanted.H ?? H.value, range: [H.value / 4, 4 * H.value],
+  if (H) found.push({ name: "H", label: t("Height"), up: true, value: wanted.H ?? H.value, range: [H.value / 4, 4 * H.value],
     at: [0, wanted.H ?? H.value],
     next: (v) => ({ structure: H.set(v) }) });
   const moved = (all, i, v) => all.map((x, k) => (k === i ? v : k !== i && x !== 0 && Math.abs(x + all[i]) < 1e-9 ? -v : x));
   (structure.elements ?? []).forEach((each, i) => {
     if (each.between || each.height) return;
     const { kind, position = 0 } = each;
-    found.push({ name: `element ${i}`, label: `Position of ${i + 1}, ${app.about.elements[kind].title}`, value: position, range: within, at: [position, 0], down: 17,
+    found.push({ name: `element ${i}`, label: t("Position of {number}, {kind}", { number: i + 1, kind: t(app.about.elements[kind].title) }), value: position, range: within, at: [position, 0], down: 17,
       next: (v) => {
         const all = structure.elements.map((other) => (other.kind === kind && !other.between && !other.height ? other.position ?? 0 : NaN));
         const now = moved(all, i, v);
@@ -77,7 +77,7 @@ function handles(app, view, wanted) {
       } });
   });
   if (stood.length < 9) stood.forEach((x, i) => found.push({
-    name: `spring ${i}`, label: `Position of spring ${i + 1}`, value: x, range: within, at: [x, 0], down: places.length ? 34 : 17,
+    name: `spring ${i}`, label: t("Position of spring {number}", { number: i + 1 }), value: x, range: within, at: [x, 0], down: places.length ? 34 : 17,
     next: (v) => ({ ground: { springs: { positions: moved(stood, i, v) } } }),
   }));
   return found;
@@ -183,6 +183,7 @@ export function drawing(app, settle) {
     if (of === app.state.structure) wanted = {};
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
     player.set(view);
+    place();
     figures.replaceChildren(...three(m, run));
     const now = performance.now();
     if (!stage.held || now - told > SELDOM) {
@@ -221,19 +222,19 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
 function few(app, shown, settle) {
   const field = (name, label, unit, hint) => box(`few.${name}`, label, "", (value) => {
     const found = shown() && measures(shown().of, shown(), app.about.kinds)[name];
-    fields[name].querySelector(".error").textContent = value > 0 ? "" : "It must be a number above 0.";
+    fields[name].querySelector(".error").textContent = value > 0 ? "" : t("It must be a number above 0.");
     if (!found || !(value > 0)) return;
     app.change({ structure: found.set(value) }, true);
     settle();
   }, { unit, hint, digits: 4 });
-  const fields = { B: field("B", "Half width of the base, B", "m"), H: field("H", "Height", "m", " "), T: field("T", "First period, base held down", "s") };
-  const record = select("few.record", "Earthquake record", [], "", (value) => {
+  const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
+  const record = select("few.record", t("Earthquake record"), [], "", (value) => {
     const [suite, name] = value.split("|");
     if (value === "more") app.go("earthquake");
     else app.change({ record: name ? { source: "suite", suite, name } : { source: suite } });
   });
-  const scale = slider("few.scale", "Scale factor of the record", { low: 0.01, high: 20, log: true }, 1, (value, live) => app.change({ scale: value }, live));
-  let known = [["el-centro-1940|EL-CENTRO-1940-NS", "El Centro 1940"], ["pulse", "a pulse"]];
+  const scale = slider("few.scale", t("Scale factor of the record"), { low: 0.01, high: 20, log: true }, 1, (value, live) => app.change({ scale: value }, live));
+  let known = [["el-centro-1940|EL-CENTRO-1940-NS", "El Centro 1940"], ["pulse", t("a pulse")]];
   attempt(() => get(`/api/suite/${FAR_FIELD}`), () => ({ records: [] })).then(({ records }) => {
     known = [...known, ...records.map(({ name, event }) => [`${FAR_FIELD}|${name}`, `${event}, ${name}`])];
     refresh();
@@ -244,8 +245,8 @@ function few(app, shown, settle) {
     const { record: now, scale: by } = app.state;
     const chosen = now.source === "suite" ? `${now.suite}|${now.name}` : now.source;
     if (record.dataset.listed !== `${known.length} ${chosen}`) { // not at every move of a handle
-      const other = known.some(([value]) => value === chosen) ? [] : [[chosen, now.source === "suite" ? now.name : "your own record"]];
-      record.setOptions([...other, ...known, ["more", "others: suites, pulses, your files …"]], chosen);
+      const other = known.some(([value]) => value === chosen) ? [] : [[chosen, now.source === "suite" ? now.name : t("your own record")]];
+      record.setOptions([...other, ...known, ["more", t("others: suites, pulses, your files …")]], chosen);
       record.dataset.listed = `${known.length} ${chosen}`;
     }
     record.setValue(chosen);
@@ -255,7 +256,7 @@ function few(app, shown, settle) {
       each.hidden = !found[name];
       if (found[name]) each.setValue(each.unit.size === 1 ? tidy(found[name].value) : found[name].value);
     }
-    if (view) fields.H.querySelector(".hint").textContent = `slenderness: ${number(view.heights.at(-1) / view.half_width, 3)} times B`;
+    if (view) fields.H.querySelector(".hint").textContent = t("slenderness: {ratio} times B", { ratio: number(view.heights.at(-1) / view.half_width, 3) });
   }
   return { element: h("div", { class: "few" }, Object.values(fields), record, scale), refresh };
 }

@@ -6,6 +6,9 @@ import { fromSI, toSI, unitFor } from "./units.js";
 
 let serial = 0;
 
+// The range of a number, in words.
+export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
+
 // A field around any control; the server's messages about `path` appear in it. `unit` is that of SI: `element.unit` is shown.
 export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
   const id = control.id || `f${++serial}`;
@@ -165,12 +168,11 @@ export function tableField(path, spec, value, change) {
     });
     control.value = write(fromSI(shown, unit));
   }
-  const [low, high] = fromSI([spec.low, spec.high], unit).map((limit) => number(limit));
-  const limits = spec.low === null ? "" : `${low} to ${high} ${unit.name}`.trim();
+  const limits = spec.low === null ? "" : between(...fromSI([spec.low, spec.high], unit), unit.name);
   const typed = spec.type !== "flag" && spec.type !== "choice";
-  const optional = typed && !spec.required ? "optional" : "";
-  const hint = [spec.help.replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
-  const element = field(path, spec.label, control, { unit: spec.unit, hint });
+  const optional = typed && !spec.required ? t("optional") : "";
+  const hint = [t(spec.help).replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
+  const element = field(path, t(spec.label), control, { unit: spec.unit, hint });
   element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, unit)));
   return element;
 }
@@ -193,8 +195,8 @@ export function tableGroup(path, spec, value, start, change) {
       now = { ...now, [each.name]: v };
       change(now);
     })) : [];
-    element.replaceChildren(h("legend", {}, spec.label), h("p", { class: "hint" }, symbol(spec.help)), ...inner,
-      now ? button("Remove", () => undefined, "button") : button("Add", start, "input"), trouble());
+    element.replaceChildren(h("legend", {}, t(spec.label)), h("p", { class: "hint" }, symbol(t(spec.help))), ...inner,
+      now ? button(t("Remove"), () => undefined, "button") : button(t("Add"), start, "input"), trouble());
   }
   draw();
   return element;
@@ -270,8 +272,7 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
       change(given);
     },
   });
-  const limits = `${number(low)} to ${number(high)}${unit ? ` ${unit}` : ""}`;
-  const element = field(path, label, entry, { unit, hint: hint || limits });
+  const element = field(path, label, entry, { unit, hint: hint || between(low, high, unit) });
   element.querySelector(".row").prepend(range);
   const say = () => range.setAttribute("aria-valuetext", `${entry.value} ${element.unit.name}`.trim());
   element.setValue = (v) => {

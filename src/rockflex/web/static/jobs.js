@@ -2,16 +2,17 @@
 
 import { ask, attempt, drop, file, get } from "./api.js";
 import { CHOSEN, GIVEN, suitesOf, yields } from "./choices.js";
-import { counted, h, latest, save } from "./dom.js";
+import { h, latest, save } from "./dom.js";
 import { box, chips, select, trouble } from "./form.js";
-import { t } from "./texts.js";
+import { counted, t } from "./texts.js";
 
 const STUDY_STATUS = {
-  waiting: () => "Waiting for other users' runs.",
-  running: (answer) => `${answer.done} of ${counted(answer.total, "run")}`,
-  done: (answer) => `Done: ${counted(answer.total, "run")}.`,
-  cancelled: (answer) => `Cancelled after ${answer.done} of ${counted(answer.total, "run")}.`,
-  failed: (answer) => `Failed: ${answer.message}`,
+  waiting: () => t("Waiting for other users' runs."),
+  running: ({ done, total }) => counted(total, t("{done} of {n} run", { done }), t("{done} of {n} runs", { done })),
+  done: ({ total }) => counted(total, t("Done: {n} run."), t("Done: {n} runs.")),
+  cancelled: ({ done, total }) =>
+    counted(total, t("Cancelled after {done} of {n} run.", { done }), t("Cancelled after {done} of {n} runs.", { done })),
+  failed: ({ message }) => t("Failed: {message}", { message }),
 };
 const SHOWN = 400; // ms between two polls while the tab is shown
 const ASIDE = 5000; // and while it is not: the server stops a study that is not polled
@@ -33,7 +34,7 @@ export function choices(app, kind) {
   const now = app.state[kind];
   const put = (patch) => app.change({ [kind]: patch });
   const set = (name) => (value) => put({ [name]: value });
-  const suites = chips(`${kind}.suites`, "Suites of records", suitesOf(app, now.suites), now.suites, set("suites"));
+  const suites = chips(`${kind}.suites`, t("Suites of records"), suitesOf(app, now.suites), now.suites, set("suites"));
   suites.refresh = () => suites.setOptions(suitesOf(app, app.state[kind].suites), app.state[kind].suites);
   return {
     put,
@@ -47,7 +48,7 @@ export function choices(app, kind) {
 export class Remarks {
   constructor() {
     this.list = h("ul", { class: "notes" });
-    this.element = h("details", {}, h("summary", {}, "Remarks on the fits"), this.list);
+    this.element = h("details", {}, h("summary", {}, t("Remarks on the fits")), this.list);
     this.set([]);
   }
 
@@ -63,18 +64,18 @@ const kept = {}; // what a study goes on with, by its kind
 
 export class Study {
   // `key` identifies everything that determines the runs; `show` draws an answer into `results`; `example` returns the
-  // choices of a quick look, so that the tab begins with something to see.
-  constructor(app, kind, { verb, key, show, results, example }) {
-    Object.assign(this, { app, kind, verb, key, show, results, example });
+  // choices of a quick look, so that the tab begins with something to see; `words` are those of the button and the status.
+  constructor(app, kind, { words, key, show, results, example }) {
+    Object.assign(this, { app, kind, words, key, show, results, example });
     this.answer = null;
     this.watching = false;
     // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
     Object.assign(this, kept[kind] ?? { token: null, looked: null, ran: "" });
     delete kept[kind];
-    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, verb);
-    this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
-    this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress" });
-    this.status = h("p", { class: "help", id: "status", role: "status" }, `No ${verb.toLowerCase()} yet.`);
+    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, words.run);
+    this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, t("Cancel"));
+    this.bar = h("progress", { max: 1, value: 0, "aria-label": t("Progress") });
+    this.status = h("p", { class: "help", id: "status", role: "status" }, words.none);
     this.foot = h("p", { class: "error foot", role: "alert" });
     this.element = h("div", {},
       h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
@@ -99,7 +100,7 @@ export class Study {
 
   // Buttons for files: files of runs once there are any, the others at any time.
   downloads(root, ofRuns, others) {
-    const own = [`${this.kind}-records`, "Records (ZIP)"]; // those that the program has not
+    const own = [`${this.kind}-records`, t("Records (ZIP)")]; // those that the program has not
     const names = ofRuns.map(([what]) => what);
     const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/file/${what}`);
     const buttons = downloads(this.app, root, [...ofRuns, ...others, own], path);
@@ -172,13 +173,13 @@ export class Study {
     const { answer } = this;
     const on = goes(answer);
     const old = this.ran !== this.key();
-    this.run.textContent = on && !this.looked ? `${this.verb} again` : this.verb;
+    this.run.textContent = on && !this.looked ? this.words.again : this.words.run;
     this.cancel.disabled = !on;
     this.bar.value = answer.done / answer.total;
     for (const button of this.needRuns) button.disabled = !(answer.ready ?? answer.done) || Boolean(this.looked);
-    const first = this.looked ? "A quick look, with fewer runs. " : "";
-    const changed = old ? ` The input has changed: ${this.verb.toLowerCase()} again.` : "";
-    this.status.textContent = first + STUDY_STATUS[answer.status](answer) + changed;
+    this.status.textContent = [
+      this.looked ? t("A quick look, with fewer runs.") : "", STUDY_STATUS[answer.status](answer), old ? this.words.changed : "",
+    ].filter(Boolean).join(" ");
     this.results.classList.toggle("stale", old);
     this.show(answer);
   }

@@ -3,20 +3,20 @@
 import { ask, attempt, get, Refusal } from "./api.js";
 import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
-import { t } from "./texts.js";
+import { language, t } from "./texts.js";
 import { setUnits } from "./units.js";
 
 const TABS = [
-  ["structure", "Structure",
-    "A structure that is not tied to the ground: in an earthquake it lifts off and rocks from edge to edge, which limits its forces. Drag the dots, or type numbers."],
-  ["earthquake", "Earthquake",
-    "Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like."],
-  ["response", "Response",
-    "See the structure rock, with amplified displacements, next to its rotation, forces and energy over time."],
-  ["fragility", "Fragility",
-    "Estimate how likely a limit state is at a given intensity, from runs with many scaled records."],
-  ["design", "Design",
-    "Find how wide the base must be to meet a target probability, with and without a tendon."],
+  ["structure", t("Structure"),
+    t("A structure that is not tied to the ground: in an earthquake it lifts off and rocks from edge to edge, which limits its forces. Drag the dots, or type numbers.")],
+  ["earthquake", t("Earthquake"),
+    t("Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like.")],
+  ["response", t("Response"),
+    t("See the structure rock, with amplified displacements, next to its rotation, forces and energy over time.")],
+  ["fragility", t("Fragility"),
+    t("Estimate how likely a limit state is at a given intensity, from runs with many scaled records.")],
+  ["design", t("Design"),
+    t("Find how wide the base must be to meet a target probability, with and without a tendon.")],
 ];
 
 const LIVE = 300; // ms after the last move, until the address changes
@@ -84,7 +84,7 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  if (!found) return text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  if (!found) return text.replace(/^record(?:\.\w+)*: (.*)$/s, (_, message) => t("Earthquake: {message}", { message }));
   const values = { field: found[2].replaceAll("_", " "), message: found[3] };
   const plain = app.state.units === "SI" || !/\d/.test(found[3]);
   return plain ? t("Structure, {field}: {message}", values) : t("Structure, {field} (in SI units): {message}", values);
@@ -119,15 +119,15 @@ function heading() {
   if (!app.state) return "rockflex";
   const { structure, record, record_set, scale, tab, target } = app.state;
   const motion = {
-    suite: record.name, pulse: "a pulse", upload: "an uploaded record", folder: record.given || "records of a folder",
+    suite: record.name, pulse: t("a pulse"), upload: t("an uploaded record"), folder: record.given || t("records of a folder"),
   }[record.source];
   const times = scale === 1 ? "" : ` × ${number(scale)}`;
-  const under = {
-    structure: "",
-    earthquake: target.shown ? " under records for a target spectrum" : ` under ${motion}${times}`,
-    response: record_set.shown ? ` ${t("under a set of records")}` : ` under ${motion}${times}`,
-  }[tab] ?? " under many records";
-  return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
+  const of = { structure: structure.name || t("Structure"), record: `${motion}${times}` };
+  const one = t("{structure} under {record}", of);
+  const earthquake = target.shown ? t("{structure} under records for a target spectrum", of) : one;
+  const response = record_set.shown ? t("{structure} under a set of records", of) : one;
+  const about = { structure: of.structure, earthquake, response }[tab] ?? t("{structure} under many records", of);
+  return `${about} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
 
 let written = "";
@@ -147,11 +147,11 @@ async function open() {
     try {
       state = await ask("/api/state", { state: decoded(location.hash) });
     } catch (error) {
-      banner.textContent = `The link cannot be opened: ${reason(error)} The default structure is shown instead.`;
+      banner.textContent = t("The link cannot be opened: {reason} The default structure is shown instead.", { reason: reason(error) });
       banner.hidden = false;
     }
   }
-  app.state = state;
+  app.state = Object.assign(state, { language });
   if (early) state.tab = early;
   early = null;
   document.getElementById("units").value = state.units;
@@ -173,7 +173,7 @@ async function renew(runs) {
 }
 
 function reason(error) {
-  if (!(error instanceof Refusal)) return "it is damaged.";
+  if (!(error instanceof Refusal)) return t("it is damaged.");
   return Object.entries(error.errors).map(([path, text]) => (path ? `${path}: ${text}` : text)).join(" ");
 }
 
@@ -202,6 +202,8 @@ function refresh(live = false) {
 
 function tabs() {
   const list = document.getElementById("tabs");
+  list.ariaLabel = t("Steps");
+  document.getElementById("language").ariaLabel = t("Language");
   list.append(...TABS.map(([name, title]) => h("button", {
     type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "view", "data-tab": name, onclick: () => app.go(name),
   }, title)));
@@ -216,7 +218,9 @@ function tabs() {
     tabOf(name).focus();
   });
   // Following the link itself would replace the state in the address.
-  document.getElementById("skip").addEventListener("click", (event) => {
+  const skip = document.getElementById("skip");
+  skip.textContent = t("Skip to content");
+  skip.addEventListener("click", (event) => {
     event.preventDefault();
     document.getElementById("main").focus();
   });
@@ -230,7 +234,9 @@ function theme(name) {
 function themes() {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   theme(localStorage.getItem("rockflex-theme") ?? (dark.matches ? "dark" : "light"));
-  document.getElementById("theme").addEventListener("click", () => {
+  const button = document.getElementById("theme");
+  button.title = button.ariaLabel = t("Light or dark theme");
+  button.addEventListener("click", () => {
     const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
     localStorage.setItem("rockflex-theme", next);
     theme(next);
@@ -247,14 +253,16 @@ function unitsChoice() {
 
 function copying() {
   const button = document.getElementById("copy");
+  button.title = t("Copy a link to the page in its present state");
+  button.textContent = t("Copy link");
   button.addEventListener("click", async () => {
     try {
       await navigator.clipboard.writeText(location.href);
-      button.textContent = "Copied";
+      button.textContent = t("Copied");
     } catch {
-      button.textContent = "Copy it from the address";
+      button.textContent = t("Copy it from the address");
     }
-    setTimeout(() => (button.textContent = "Copy link"), 2000);
+    setTimeout(() => (button.textContent = t("Copy link")), 2000);
   });
 }
 

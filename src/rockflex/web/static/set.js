@@ -3,11 +3,11 @@
 import { Chart } from "./chart.js";
 import { checksTable } from "./checks.js";
 import { explained } from "./choices.js";
-import { counted, decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
+import { decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
 import { select } from "./form.js";
 import { assumed, choices, recordsOf, Study } from "./jobs.js";
 import { legend } from "./marks.js";
-import { t } from "./texts.js";
+import { counted, t } from "./texts.js";
 import { titled, unit } from "./units.js";
 
 const rules = () => [
@@ -39,7 +39,7 @@ export function recordSet(app, root) {
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
   const results = h("div", { class: "results", id: "record-set" }, drawing);
   const study = new Study(app, "record_set", {
-    verb: t("Simulate"), results, show, example: () => null,
+    results, show, words: { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") }, example: () => null,
     key: () => JSON.stringify([assumed(app.state, [label()]), recordsOf(app.state, choice().suites), choice().scale,
       app.state.free_vibration, app.state.limits.friction === undefined]),
   });
@@ -105,12 +105,12 @@ export function recordSet(app, root) {
   return { form, results, refresh, close: (runs) => study.close(runs) };
 }
 
-const plain = ({ symbol: text, unit: name }) => (name ? `${text} [${name}]` : text);
+const plain = ({ symbol: text, unit: name }) => (name ? `${t(text)} [${name}]` : t(text));
 
 function summary({ demands, records, model }) {
   const fell = records.filter((each) => each.status === "overturned").length;
   const rotation = demands.find(({ name }) => name === "max_rotation");
-  const values = { model, records: counted(records.length, t("record")), fell, value: number(rotation?.design / rotation?.size, 3), unit: rotation?.unit };
+  const values = { model, records: counted(records.length, t("{n} record"), t("{n} records")), fell, value: number(rotation?.design / rotation?.size, 3), unit: rotation?.unit };
   if (fell) return t("{model} under {records}: the structure overturns in {fell} of them.", values);
   if (!rotation) return t("{model} under {records}: the base does not turn.", values);
   return t("{model} under {records}: none overturns the structure; the rotation for design is {value} {unit}.", values);

@@ -5,6 +5,7 @@ import { color, context, h } from "./dom.js";
 import { colorOf, depthOf, drawSprings, drawStance, isTendon, motionOf, strokes } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
+import { t, written } from "./texts.js";
 import { unit } from "./units.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
@@ -17,8 +18,8 @@ class Stage {
   // `room` is the height that fits in the drawing, over that of the structure.
   constructor({ height = 340, room = 1.08 } = {}) {
     this.canvas = h("canvas", {
-      tabindex: 0, role: "application", "aria-roledescription": "animation", "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
-      "aria-label": "The structure rocking: space plays and pauses, arrow keys step",
+      tabindex: 0, role: "application", "aria-roledescription": t("animation"), "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
+      "aria-label": t("The structure rocking: space plays and pauses, arrow keys step"),
     });
     this.layer = h("div", { class: "handles" });
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
@@ -87,9 +88,9 @@ class Stage {
       this.depth = depthOf(this.view, this.amplification, first);
       this.zoom = Math.min((this.height - 74 - this.depth) / (top * this.room), wide);
     }
-    const scale = [width, this.height, this.zoom, this.depth].join();
-    if (scale !== this.scale) this.placed?.(); // which reads and writes the page, so not at every frame
+    const [before, scale] = [this.scale, [width, this.height, this.zoom, this.depth].join()];
     Object.assign(this, { width, scale });
+    if (scale !== before) this.placed?.(); // which changes the page, so not at every frame
     this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
   }
 
@@ -254,20 +255,20 @@ class Stage {
     g.fillText(text, centre, this.height - 20, room);
     g.fillStyle = color("muted");
     const { size, name } = unit("rotation");
-    const rotation = `${(frame.theta / size).toFixed(size < 1 ? 2 : 5).replace("-", "−")} ${name}`;
+    const rotation = `${written((frame.theta / size).toFixed(size < 1 ? 2 : 5))} ${name}`;
     g.fillText(room > 100 ? `θ = ${rotation}` : rotation, centre, this.height - 5, room);
   }
 }
 
 // The state of a model in words, and the colour of the words.
 function stateOf(model, frame, time) {
-  if (Math.abs(frame.theta) > 1.5) return ["overturned", "error"];
-  if ((model.fall_time ?? Infinity) <= time) return ["falling", "error"];
-  if (frame.flies) return ["off the ground", "c1"];
-  if (frame.impact) return ["impact", "lost"];
-  if (frame.uplifted) return [frame.slides ? "uplifted, sliding" : "uplifted", "c1"];
-  if (frame.slides) return ["sliding", "friction"];
-  return [model.lifts ? "in contact" : "fixed base", "muted"];
+  if (Math.abs(frame.theta) > 1.5) return [t("overturned"), "error"];
+  if ((model.fall_time ?? Infinity) <= time) return [t("falling"), "error"];
+  if (frame.flies) return [t("off the ground"), "c1"];
+  if (frame.impact) return [t("impact"), "lost"];
+  if (frame.uplifted) return [frame.slides ? t("uplifted, sliding") : t("uplifted"), "c1"];
+  if (frame.slides) return [t("sliding"), "friction"];
+  return [model.lifts ? t("in contact") : t("fixed base"), "muted"];
 }
 
 // Strokes across and along the line from one point to another.
@@ -298,34 +299,29 @@ function drawGround(g, left, right, ground) {
   g.stroke();
 }
 
-const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", "real time"], ["2", "× 2"]];
+const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", t("real time")], ["2", "× 2"]];
 const STEPS = 200; // of the arrow keys over the whole duration
 
 export class Player {
   // `moved` is called with each time shown; `kinds` are those of elements; with `loop` it begins again at its end.
   constructor(moved, kinds, { loop = false, ...size } = {}) {
-    Object.assign(this, { moved, kinds, loop });
-    this.stage = new Stage(size);
-    this.view = null;
-    this.time = 0;
-    this.amplification = 1;
+    Object.assign(this, { moved, kinds, loop, stage: new Stage(size), view: null, time: 0, amplification: 1, playing: null });
     this.chosen = false; // whether the user chose the amplification
-    this.playing = null;
-    this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, "Play");
-    this.speed = h("select", { id: "speed", "aria-label": "Speed" },
+    this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, t("Play"));
+    this.speed = h("select", { id: "speed", "aria-label": t("Speed") },
       SPEEDS.map(([value, text]) => h("option", { value }, text)));
     this.speed.value = "1";
     const jump = h("button", {
-      type: "button", title: "Go to the largest rotation",
+      type: "button", title: t("Go to the largest rotation"),
       onclick: () => this.view && this.go(this.view.models[0].peaks.time_of_max_rotation),
-    }, "Largest rotation");
+    }, t("Largest rotation"));
     // Screen readers read the time from its slider: announcing every frame would never end.
-    this.clock = h("output", { id: "clock", for: "scrub", "aria-live": "off" }, "0.00 s");
+    this.clock = h("output", { id: "clock", for: "scrub", "aria-live": "off" }, `${written("0.00")} s`);
     this.scrub = h("input", {
-      type: "range", id: "scrub", min: 0, max: 1, step: 0.001, value: 0, "aria-label": "Time",
+      type: "range", id: "scrub", min: 0, max: 1, step: 0.001, value: 0, "aria-label": t("Time"),
       oninput: () => this.go(Number(this.scrub.value)),
     });
-    this.amplify = slider("amplification", "Amplification of the drawing", { low: 1, high: 200, log: true }, 1, (value) => {
+    this.amplify = slider("amplification", t("Amplification of the drawing"), { low: 1, high: 200, log: true }, 1, (value) => {
       this.chosen = true;
       this.amplification = Number(value) > 0 ? Number(value) : 1;
       this.stage.show(this.time, this.amplification);
@@ -346,7 +342,7 @@ export class Player {
     this.stage.view = { ...view, colors };
     if (this.stage.held && this.playing) return this.advance();
     const shown = Object.keys(this.kinds).filter((kind) => view.elements.some((each) => each.kind === kind));
-    this.keys.replaceChildren(legend(shown.map((kind) => ({ label: this.kinds[kind].title, color: colorOf(kind) }))));
+    this.keys.replaceChildren(legend(shown.map((kind) => ({ label: t(this.kinds[kind].title), color: colorOf(kind) }))));
     this.scrub.max = view.end;
     this.scrub.step = Math.max(0.001, Number((view.end / 20000).toPrecision(1)));
     this.move(this.time);
@@ -355,7 +351,7 @@ export class Player {
   move(time) {
     this.time = Math.min(Math.max(time, 0), this.view.end);
     this.scrub.value = this.time;
-    const text = `${this.time.toFixed(2)} s`;
+    const text = `${written(this.time.toFixed(2))} s`;
     this.clock.textContent = text;
     this.scrub.setAttribute("aria-valuetext", text);
     this.stage.show(this.time, this.amplification);
@@ -376,13 +372,13 @@ export class Player {
   pause() {
     if (this.playing) cancelAnimationFrame(this.playing);
     this.playing = null;
-    this.button.textContent = "Play";
+    this.button.textContent = t("Play");
   }
 
   #start() {
     if (!this.view) return;
     if (this.time >= this.view.end) this.move(0);
-    this.button.textContent = "Pause";
+    this.button.textContent = t("Pause");
     this.last = performance.now();
     const frame = () => {
       if (!this.playing) return;

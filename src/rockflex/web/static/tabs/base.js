@@ -17,9 +17,9 @@ export function base(about, view) {
   const x = (metres) => WIDTH / 2 + (metres / reach) * (WIDTH / 2 - 24);
   const [left, right] = [x(-b - e), x(b - e)];
   const names = elements.map((each, i) => nameOf(about, each, i));
-  if (springs.length) names.unshift("springs under the base");
+  if (springs.length) names.unshift(t("springs under the base"));
   return svg("svg", {
-    id: "base", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `The base and what holds it: ${names.join("; ")}`,
+    id: "base", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": t("The base and what holds it: {names}", { names: names.join("; ") }),
   },
   svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: ink("control"), "stroke-dasharray": "4 3" }),
   svg("path", { d: hatch(), stroke: ink("muted"), fill: "none" }),
@@ -100,19 +100,19 @@ function fresh(kind, list, view) {
 
 // `current` returns a copy of the structure, `put` takes the changed one; `shown` returns its view, if there is one.
 export function elements({ about }, current, put, shown) {
-  const titles = Object.entries(about.elements).map(([name, { title }]) => [name, title]);
+  const titles = Object.entries(about.elements).map(([name, { title }]) => [name, t(title)]);
   const most = about.limits.elements;
   const rows = h("div");
-  const kind = h("select", { id: "new-element", "aria-label": "Element to add" },
+  const kind = h("select", { id: "new-element", "aria-label": t("Element to add") },
     titles.map(([name, title]) => h("option", { value: name }, title)));
   const add = h("button", { type: "button", onclick: () => {
     change((list) => [...list, fresh(kind.value, list, shown())]);
     const last = rows.lastElementChild;
     last.open = true;
     last.querySelector("select").focus();
-  } }, "Add an element");
-  const element = folded("devices", "Devices at the base", h("div", { "data-path": "structure.elements" },
-    h("p", { class: "hint" }, "Between the base and the ground, at the given distance from the axis of the masses. A new one suits the weight."),
+  } }, t("Add an element"));
+  const element = folded("devices", t("Devices at the base"), h("div", { "data-path": "structure.elements" },
+    h("p", { class: "hint" }, t("Between the base and the ground, at the given distance from the axis of the masses. A new one suits the weight.")),
     rows, h("div", { class: "buttons" }, add, kind), trouble()));
 
   // Change the list and draw it again.
@@ -129,13 +129,13 @@ export function elements({ about }, current, put, shown) {
     const open = [...rows.children].map((row) => row.open);
     rows.replaceChildren(...list.map((each, i) => row(each, i, open[i] ?? list.length < 2)));
     add.disabled = list.length >= most;
-    element.querySelector("summary").textContent = `Devices at the base${list.length ? ` (${list.length})` : ""}`;
+    element.querySelector("summary").textContent = list.length ? t("Devices at the base ({n})", { n: list.length }) : t("Devices at the base");
   }
 
   function row(each, i, open) {
     const path = `structure.elements.${i}`;
     const summary = h("summary", {}, nameOf(about, each, i));
-    const other = select(`${path}.kind`, "Element", titles, each.kind, (name) => {
+    const other = select(`${path}.kind`, t("Element"), titles, each.kind, (name) => {
       change((list) => list.with(i, turned(list[i], name)));
       rows.children[i].querySelector("select").focus();
     });
@@ -148,12 +148,12 @@ export function elements({ about }, current, put, shown) {
     })]);
     const fields = all.filter(([wanted]) => wanted).map(([, each]) => each);
     const left = all.filter(([wanted]) => !wanted).map(([, each]) => each);
-    if (left.length) fields.push(folded("optional", "Optional fields", left));
+    if (left.length) fields.push(folded("optional", t("Optional fields"), left));
     const remove = h("button", { type: "button", onclick: () => {
       rows.children[i].remove(); // so that the others stay open or closed
       change((list) => list.filter((_, j) => j !== i));
       add.focus();
-    } }, "Remove");
+    } }, t("Remove"));
     return h("details", { open, "data-path": path }, summary, other, fields, remove, trouble());
   }
 
@@ -169,13 +169,12 @@ export function elements({ about }, current, put, shown) {
 }
 
 const KINDS = [
-  ["", "rigid"], ["springs", "springs"], ["winkler", "bed, by subgrade modulus"],
-  ["asce41", "bed of ASCE 41, by shear modulus"], ["gazetas", t("bed of Gazetas, by shear modulus")],
+  ["", t("rigid")], ["springs", t("springs")], ["winkler", t("bed, by subgrade modulus")],
+  ["asce41", t("bed of ASCE 41, by shear modulus")], ["gazetas", t("bed of Gazetas, by shear modulus")],
 ];
 const WITHOUT = {
-  winkler: ["shear_modulus", "poisson_ratio", "method", "density"],
+  winkler: ["shear_modulus", "poisson_ratio", "method", "density"], gazetas: ["subgrade_modulus", "end_ratio", "damping", "method"],
   asce41: ["subgrade_modulus", "end_zone", "end_ratio", "method", "density"],
-  gazetas: ["subgrade_modulus", "end_ratio", "damping", "method"],
 };
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
 const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
@@ -185,15 +184,15 @@ const round = (value) => Number(value.toPrecision(2));
 export function ground(app, shown) {
   const { about } = app;
   const specs = Object.fromEntries(about.ground.map((spec) => [spec.name, spec]));
-  const kind = select("ground.kind", "Ground", KINDS, "", choose);
+  const kind = select("ground.kind", t("Ground"), KINDS, "", choose);
   const tick = h("input", { type: "checkbox", id: "slides", onchange: () => {
     const { friction: _, ...rest } = app.state.ground ?? {};
     put(tick.checked ? { ...rest, friction: FRICTION } : rest);
   } });
   const [fields, friction] = [h("div"), h("div")];
-  const element = folded("ground", "Ground", h("div", { "data-path": "ground" }, kind, fields,
-    h("label", { class: "check" }, tick, "The base can slide (Coulomb friction)"), friction,
-    h("p", { class: "hint" }, "On springs no impact law acts. Models on a fixed base are left out, there and if the base can slide."),
+  const element = folded("ground", t("Ground"), h("div", { "data-path": "ground" }, kind, fields,
+    h("label", { class: "check" }, tick, t("The base can slide (Coulomb friction)")), friction,
+    h("p", { class: "hint" }, t("On springs no impact law acts. Models on a fixed base are left out, there and if the base can slide.")),
     trouble()));
 
   let chosen = ""; // a later choice replaces one that still waits for the structure
@@ -264,7 +263,8 @@ export function ground(app, shown) {
     const { ground: given } = app.state;
     const key = JSON.stringify([kindOf(given), given?.friction !== undefined]);
     const [, title] = KINDS.find(([name]) => name === kindOf(given));
-    element.querySelector("summary").textContent = `Ground: ${title}${given?.friction === undefined ? "" : ", can slide"}`;
+    element.querySelector("summary").textContent = given?.friction === undefined ? t("Ground: {kind}", { kind: title })
+      : t("Ground: {kind}, can slide", { kind: title });
     if (key !== drawn) form();
     drawn = key;
     fields.querySelector('[data-path="ground.springs.positions"]')?.setValue(given.springs.positions); // springs can be dragged

@@ -20,57 +20,59 @@ export default function designTab(app) {
   const { entry, list, suites } = choices(app, "design");
 
   const limitStates = app.about.limit_states.filter((each) => each.noun);
-  const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.noun]));
-  const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
-  const target = entry("target", "Acceptable probability", { hint: "0.0001 to 0.99" });
-  const measure = list("measure", "Intensity measure", measuresOf(app.about, false));
-  const at = entry("at", "Intensity", { unit: unitOf(app.about, choice().measure), hint: "value of this measure, above 0" });
-  const narrowest = entry("narrowest", "From", { unit: "× present B", hint: "0.2 to 2" });
-  const widest = entry("widest", "To", { unit: "× present B", hint: "1 to 10" });
-  const widths = entry("widths", "Widths", { hint: "3 to 20" });
-  const own = h("p", { class: "help" }, "The structure already has elements at its base; they stay unchanged.");
-  const tendons = entry("tendons", "Initial forces of a central tendon",
-    { many: true, unit: "× weight", hint: "up to four, 0 for none" });
-  const stiffness = entry("stiffness", "Stiffness EA/L of the tendon",
-    { unit: "L₀ʳ g/B²", hint: "0 to 100; at 1 the moment stays constant while rocking" });
-  const scales = entry("scales", "Scale factors", { many: true, hint: "up to five, each from 0.01 to 20" });
-  const model = list("model", "Model", []);
+  const limit = list("limit", t("Limit state"), limitStates.map((each) => [each.name, t(each.noun)]));
+  const rotation = entry("rotation", t("Rotation"), { unit: "rad", hint: t("0.0001 to 1.5") });
+  const target = entry("target", t("Acceptable probability"), { hint: t("0.0001 to 0.99") });
+  const measure = list("measure", t("Intensity measure"), measuresOf(app.about, false));
+  const at = entry("at", t("Intensity"), { unit: unitOf(app.about, choice().measure), hint: t("value of this measure, above 0") });
+  const narrowest = entry("narrowest", t("From"), { unit: t("× present B"), hint: t("0.2 to 2") });
+  const widest = entry("widest", t("To"), { unit: t("× present B"), hint: t("1 to 10") });
+  const widths = entry("widths", t("Widths"), { hint: t("3 to 20") });
+  const own = h("p", { class: "help" }, t("The structure already has elements at its base; they stay unchanged."));
+  const tendons = entry("tendons", t("Initial forces of a central tendon"),
+    { many: true, unit: t("× weight"), hint: t("up to four, 0 for none") });
+  const stiffness = entry("stiffness", t("Stiffness EA/L of the tendon"),
+    { unit: "L₀ʳ g/B²", hint: t("0 to 100; at 1 the moment stays constant while rocking") });
+  const scales = entry("scales", t("Scale factors"), { many: true, hint: t("up to five, each from 0.01 to 20") });
+  const model = list("model", t("Model"), []);
 
   const width = { xLabel: titled(t("half width of the base B [{unit}]"), "length"), xName: titled("B [{unit}]", "length") };
   const chart = new Chart({
-    label: "Probability over half width of the base", yLabel: "probability", height: 360, ...width,
+    label: t("Probability over half width of the base"), yLabel: t("probability"), height: 360, ...width,
   });
   const moments = new Chart({
-    label: "Median base moment over half width", yLabel: titled("M_b [{unit}]", "moment"), height: 190, zero: true, ...width,
+    label: t("Median base moment over half width"), yLabel: titled("M_b [{unit}]", "moment"), height: 190, zero: true, ...width,
   });
   const keys = h("div");
-  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "A quick look is computed first. Press Search to find how wide the base must be.");
+  const verdict = h("div", { class: "answer", id: "width", role: "status" }, t("A quick look is computed first. Press Search to find how wide the base must be."));
   const remarks = new Remarks();
-  const table = scrolled("Designs", { id: "designs" });
+  const table = scrolled(t("Designs"), { id: "designs" });
   const drawing = h("div", { hidden: true }, keys, chart.element,
-    h("p", { class: "hint" }, "Lines: probability of exceeding the limit at this intensity, overturning included; ",
-      "bands: 90 % confidence over the recordings; dashed: acceptable probability."),
+    h("p", { class: "hint" }, t("Lines: probability of exceeding the limit at this intensity, overturning included; " +
+      "bands: 90 % confidence over the recordings; dashed: acceptable probability.")),
     table,
-    h("h2", {}, "Base moment"), moments.element,
-    h("p", { class: "hint" }, "Median over all runs of the largest base moment."),
+    h("h2", {}, t("Base moment")), moments.element,
+    h("p", { class: "hint" }, t("Median over all runs of the largest base moment.")),
     remarks.element);
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
-    verb: "Search", results, show,
+    results, show,
+    words: { run: t("Search"), again: t("Search again"), none: t("No search yet."), changed: t("The input has changed: search again.") },
     example: () => ({ widths: 4, tendons: choice().tendons.slice(0, 1), scales: choice().scales.slice(-1) }),
     key: () => JSON.stringify([assumed(app.state, [choice().model]), recordsOf(app.state, choice().suites), RUNS.map((name) => choice()[name])]),
   });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, h("legend", {}, "Target"), limit, rotation, target, measure, at),
-      h("fieldset", {}, h("legend", {}, "Search"),
+      h("fieldset", {}, h("legend", {}, t("Target")), limit, rotation, target, measure, at),
+      h("fieldset", {}, h("legend", {}, t("Search")),
         narrowest, widest, widths, own, tendons, stiffness, suites, scales, model, study.element)),
     results);
   results.append(study.downloads(element,
-    [["figure", "Figure (SVG)"], ["table", "Designs (CSV)"]],
-    [["design-study", "Study (TOML)"], ["design-python", "Python lines"]]));
+    [["figure", t("Figure (SVG)")], ["table", t("Designs (CSV)")]],
+    [["design-study", t("Study (TOML)")], ["design-python", t("Python lines")]]));
 
   function show(answer) {
+    for (const each of [...answer.curves, ...answer.answers]) each.tendon = t(each.tendon);
     drawing.hidden = !answer.curves.length;
     const curves = answer.curves.map((curve, i) => ({ ...curve, x: numbers(curve.half_width, "length"), look: look(i) }));
     const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
@@ -85,7 +87,7 @@ export default function designTab(app) {
         ...met.map((each) => (
           { kind: "points", x: numbers([each.half_width], "length"), y: [choice().target], color: each.color, hollow: true, size: 7, width: 2 })),
       ],
-      hlines: [{ y: choice().target, label: "acceptable", color: "muted" }],
+      hlines: [{ y: choice().target, label: t("acceptable"), color: "muted" }],
       vlines: [
         { x: numbers([answer.present], "length")[0], label: t("present base"), color: "muted", dash: [2, 3] },
         ...met.map((each) => ({ x: numbers([each.half_width], "length")[0], label: `B = ${inUnit(each.half_width, "length", 3)}`, color: each.color })),

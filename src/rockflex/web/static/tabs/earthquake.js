@@ -3,47 +3,47 @@
 import { attempt, get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number, svg } from "../dom.js";
-import { select, slider, trouble } from "../form.js";
+import { between, select, slider, trouble } from "../form.js";
 import { downloads } from "../jobs.js";
 import { t } from "../texts.js";
 import { fromSI, inUnit, titled, unit, unitFor } from "../units.js";
 import { folder, uploading } from "./files.js";
 import { target } from "./target.js";
 
-const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"], ["folder", "Your folder of records"]];
+const SOURCES = [["suite", t("A recorded suite")], ["pulse", t("A pulse")], ["upload", t("Your own file")], ["folder", t("Your folder of records")]];
 const MISSING = {
-  upload: "Choose a file; its motion and spectrum will appear here.",
-  folder: "Choose a folder, files or a ZIP archive of records; a report of them will appear here.",
+  upload: t("Choose a file; its motion and spectrum will appear here."),
+  folder: t("Choose a folder, files or a ZIP archive of records; a report of them will appear here."),
 };
 const PULSE = {
-  amplitude: ["Amplitude", { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
-  period: ["Period", { low: 0.1, high: 5, step: 0.01, unit: "s" }],
-  gamma: ["Oscillations", { low: 1, high: 4, step: 0.05, hint: "number of oscillations γ, 1 to 4" }],
-  nu: ["Phase", { low: -3.14, high: 3.14, step: 0.01, unit: "rad", hint: "phase ν, −π to π" }],
+  amplitude: [t("Amplitude"), { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
+  period: [t("Period"), { low: 0.1, high: 5, step: 0.01, unit: "s" }],
+  gamma: [t("Oscillations"), { low: 1, high: 4, step: 0.05, hint: t("number of oscillations γ, 1 to 4") }],
+  nu: [t("Phase"), { low: -3.14, high: 3.14, step: 0.01, unit: "rad", hint: t("phase ν, −π to π") }],
 };
-const TASKS = [["", "Choose one ground motion"], ["target", "Choose records for a target spectrum"]];
+const TASKS = [["", t("Choose one ground motion")], ["target", t("Choose records for a target spectrum")]];
 const HISTORIES = [
-  ["acceleration", "a [{unit}]", "acceleration", "c0", 160],
-  ["vertical", "a_v [{unit}]", "acceleration", "c1", 110],
-  ["velocity", "v [{unit}]", "velocity", "c2", 110],
-  ["displacement", "d [{unit}]", "length", "c3", 126],
+  ["acceleration", "a [{unit}]", "acceleration", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
+  ["vertical", "a_v [{unit}]", "acceleration", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
+  ["velocity", "v [{unit}]", "velocity", "c2", 110, t("Ground velocity over time"), t("velocity")],
+  ["displacement", "d [{unit}]", "length", "c3", 126, t("Ground displacement over time"), t("displacement")],
 ];
 
 export default function earthquakeTab(app) {
   const { about } = app;
   const { record } = app.state;
   const put = (patch) => app.change({ record: patch });
-  const source = select("record.source", "Source", SOURCES, record.source, (value) => put({ source: value }));
-  const suite = select("record.suite", "Suite", about.suites.map((name) => [name, name]), record.suite, async (value) => {
+  const source = select("record.source", t("Source"), SOURCES, record.source, (value) => put({ source: value }));
+  const suite = select("record.suite", t("Suite"), about.suites.map((name) => [name, name]), record.suite, async (value) => {
     const found = await get(`/api/suite/${encodeURIComponent(value)}`);
     put({ suite: value, name: found.records[0].name });
   });
   const thumbs = records(app);
-  const titles = Object.entries(about.pulses).map(([name, { title }]) => [name, title]);
-  const shape = select("record.pulse.shape", "Shape", titles, record.pulse.shape, (value) => put({ pulse: { shape: value } }));
+  const titles = Object.entries(about.pulses).map(([name, { title }]) => [name, t(title)]);
+  const shape = select("record.pulse.shape", t("Shape"), titles, record.pulse.shape, (value) => put({ pulse: { shape: value } }));
   const sliders = Object.fromEntries(Object.entries(PULSE).map(([key, [label, spec]]) => [key,
     slider(`record.pulse.${key}`, label, spec, record.pulse[key], (value) => put({ pulse: { [key]: value } }))]));
-  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const given = folder(app, (errors) => app.complain(element, errors));
   const panels = {
@@ -53,30 +53,30 @@ export default function earthquakeTab(app) {
     folder: given.element,
   };
 
-  const charts = overTime(HISTORIES.map(([key, yLabel, quantity, , height]) => (
-    { label: `Ground ${key} over time`, yLabel: titled(yLabel, quantity), height })));
+  const charts = overTime(HISTORIES.map(([, yLabel, quantity, , height, label]) => (
+    { label, yLabel: titled(yLabel, quantity), height })));
   const spectrum = new Chart({
-    label: "Acceleration spectrum", yLabel: titled("Sa [{unit}]", "acceleration"), xLabel: t("period [s]"), xName: "T [s]", height: 230,
+    label: t("Acceleration spectrum"), yLabel: titled("Sa [{unit}]", "acceleration"), xLabel: t("period [s]"), xName: "T [s]", height: 230,
     xLog: true, zero: true,
   });
   const title = h("h2", { id: "record-title" });
   const measures = h("dl", { class: "values", id: "measures" });
   const drawing = h("div", {},
     title, charts.map((chart) => chart.element), measures,
-    h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
+    h("h2", {}, t("Response spectrum, 5 % damping")), spectrum.element);
   const empty = h("p", { class: "answer", hidden: true }, "");
   const results = h("div", { class: "results" }, empty, given.report, drawing);
   const chosen = target(app, () => side);
   const single = [
-    h("fieldset", {}, h("legend", {}, "Ground motion"), source, Object.values(panels),
+    h("fieldset", {}, h("legend", {}, t("Ground motion")), source, Object.values(panels),
       h("p", { class: "error foot", role: "alert" })),
-    h("fieldset", {}, h("legend", {}, "Scale"), scale)];
-  const task = select("task", "Task", TASKS, "", (value) => app.change({ target: { shown: value === "target" } }));
+    h("fieldset", {}, h("legend", {}, t("Scale")), scale)];
+  const task = select("task", t("Task"), TASKS, "", (value) => app.change({ target: { shown: value === "target" } }));
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(downloads(app, element, [["records", "Your records (ZIP)"]]));
-  drawing.append(downloads(app, element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
+  given.report.append(downloads(app, element, [["records", t("Your records (ZIP)")]]));
+  drawing.append(downloads(app, element, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);
@@ -88,21 +88,21 @@ export default function earthquakeTab(app) {
     const times = app.state.scale === 1 ? "" : ` × ${number(app.state.scale)}`;
     title.textContent = [answer.name, answer.title].filter(Boolean).join(" · ") + times;
     const x = decode(answer.t);
-    HISTORIES.forEach(([key, , quantity, color], i) => {
+    HISTORIES.forEach(([key, , quantity, color, , , label], i) => {
       charts[i].element.hidden = !answer[key];
       if (!answer[key]) return;
       const { size } = unit(quantity);
       const level = key === "acceleration" && answer.lifting / size;
       const lifting = { color: "c1", dash: [4, 4] };
       charts[i].set({
-        series: [{ x, y: decode(answer[key]).map((value) => value / size), color, width: 1, label: key }],
-        hlines: level ? [{ ...lifting, y: level, label: "static uplift" }, { ...lifting, y: -level }] : [],
+        series: [{ x, y: decode(answer[key]).map((value) => value / size), color, width: 1, label }],
+        hlines: level ? [{ ...lifting, y: level, label: t("static uplift") }, { ...lifting, y: -level }] : [],
       });
     });
     measures.replaceChildren(...answer.measures.map((m) => h("div", {},
-      h("dt", {}, `${m.name} [${unitFor(m.unit).name}]`),
+      h("dt", {}, `${t(m.name)} [${unitFor(m.unit).name}]`),
       h("dd", { "data-measure": m.name, "data-value": m.value }, number(fromSI(m.value, unitFor(m.unit)))),
-      h("dd", { class: "hint" }, m.help))));
+      h("dd", { class: "hint" }, t(m.help)))));
     const first = answer.first_period;
     spectrum.set({
       series: [{ x: decode(answer.periods), y: decode(answer.sa).map((value) => value / unit("acceleration").size), color: "c0", label: "Sa" }],
@@ -134,8 +134,8 @@ export default function earthquakeTab(app) {
     sliders.amplitude.setValue(now.pulse.amplitude);
     const { low, high } = PULSE.amplitude[1];
     const [from, to] = fromSI([low, high], sliders.amplitude.unit, 3);
-    const limits = { low: from, high: to, unit: sliders.amplitude.unit.name };
-    sliders.amplitude.querySelector(".hint").textContent = velocity ? t("{low} to {high} {unit}, of the velocity", limits) : t("{low} to {high} {unit}", limits);
+    const range = between(from, to, sliders.amplitude.unit.name);
+    sliders.amplitude.querySelector(".hint").textContent = velocity ? t("{range}, of the velocity", { range }) : range;
     for (const [key, panel] of Object.entries(panels)) panel.hidden = key !== now.source;
     if (now.source === "suite") thumbs.refresh();
     given.refresh();
@@ -150,7 +150,7 @@ export default function earthquakeTab(app) {
 }
 
 function records(app) {
-  const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": "Records" });
+  const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": t("Records") });
   let shown = "";
 
   function thumb(suite, record) {
@@ -179,8 +179,8 @@ function records(app) {
 }
 
 function picture(record) {
-  const t = decode(record.t);
+  const times = decode(record.t);
   const a = decode(record.a);
-  const d = Array.from(t, (x, i) => `${i ? "L" : "M"}${(100 * x).toFixed(2)} ${(17 - 16 * a[i]).toFixed(2)}`).join("");
+  const d = Array.from(times, (x, i) => `${i ? "L" : "M"}${(100 * x).toFixed(2)} ${(17 - 16 * a[i]).toFixed(2)}`).join("");
   return svg("svg", { viewBox: "0 0 100 34", preserveAspectRatio: "none", "aria-hidden": "true" }, svg("path", { d }));
 }

@@ -38,17 +38,17 @@ export class Loop {
 }
 
 const PARTS = [
-  ["kinetic", "kinetic"],
-  ["strain", "strain"],
-  ["gravity", "raised weight"],
-  ["element_strain", "stored in elements", "tendons"],
-  ["damped", "damping"],
-  ["yielded", "yielding"],
-  ["elements", "taken by elements", "fuse"],
-  ["lost", "impacts"],
-  ["soil_strain", "compressed ground", "clay"],
-  ["soil", "damped by the ground"],
-  ["friction", "friction of the base"],
+  ["kinetic", t("kinetic")],
+  ["strain", t("strain")],
+  ["gravity", t("raised weight")],
+  ["element_strain", t("stored in elements"), "tendons"],
+  ["damped", t("damping")],
+  ["yielded", t("yielding")],
+  ["elements", t("taken by elements"), "fuse"],
+  ["lost", t("impacts")],
+  ["soil_strain", t("compressed ground"), "clay"],
+  ["soil", t("damped by the ground")],
+  ["friction", t("friction of the base")],
 ];
 
 export class Energy {
@@ -60,12 +60,12 @@ export class Energy {
     });
     this.keys = h("div");
     this.note = h("p", { class: "hint" });
-    this.of = h("select", { id: "energy-of", "aria-label": "Model for the energy", onchange: () => {
+    this.of = h("select", { id: "energy-of", "aria-label": t("Model for the energy"), onchange: () => {
       this.focus = this.of.value;
       chosen();
     } });
     this.element = h("div", {},
-      h("h2", { class: "buttons" }, "Energy of", this.of), this.chart.element, this.keys, this.note);
+      h("h2", { class: "buttons" }, t("Energy of"), this.of), this.chart.element, this.keys, this.note);
   }
 
   set(view) {
@@ -88,10 +88,10 @@ export class Energy {
       below = high;
     }
     const input = decode(energy.input).map((value) => value / size);
-    series.push({ x, y: input, color: "text", width: 1.2, label: "input", until });
+    series.push({ x, y: input, color: "text", width: 1.2, label: t("input"), until });
     this.chart.set({
       series, xRange: [0, view.end],
-      vlines: until < Infinity ? [{ x: until, color: "error", label: "falls" }] : [],
+      vlines: until < Infinity ? [{ x: until, color: "error", label: t("falls") }] : [],
     });
     this.keys.replaceChildren(legend(series));
   }
@@ -104,25 +104,27 @@ const COLUMNS = [
   ["energy", t("Dissipated [{unit}]"), "energy"],
 ];
 const PRESTRESS = ["prestress", t("Prestress left [{unit}]"), "force"]; // of tendons
-const EDGES = { 1: "to the right", "-1": "to the left" };
+const CLOSING = [t("Weight and prestress need not close the base against its dissipators (λ = {ratio})."),
+  t("Weight and prestress close the base against its dissipators (λ = {ratio}).")];
+const EDGES = { 1: t("After rocking to the right: {text}"), "-1": t("After rocking to the left: {text}") };
 
 export class Elements {
   // `chosen` is called when another element or model is chosen.
   constructor(about, chosen) {
     this.about = about;
     this.element = 0;
-    this.model = h("select", { id: "elements-of", "aria-label": "Model for the elements", onchange: () => chosen() });
-    this.of = h("select", { id: "loop-of", "aria-label": "Element for the loop", onchange: () => {
+    this.model = h("select", { id: "elements-of", "aria-label": t("Model for the elements"), onchange: () => chosen() });
+    this.of = h("select", { id: "loop-of", "aria-label": t("Element for the loop"), onchange: () => {
       this.element = Number(this.of.value);
       chosen();
     } });
-    this.rows = scrolled("Largest values of the elements", {});
+    this.rows = scrolled(t("Largest values of the elements"), {});
     this.closing = h("p", { id: "closing" });
     this.table = h("div", { id: "elements" },
-      h("h2", { class: "buttons" }, "Elements at the base, by", this.model), this.rows, this.closing);
+      h("h2", { class: "buttons" }, t("Elements at the base, by"), this.model), this.rows, this.closing);
     this.loop = new Loop({ label: t("Force over elongation of an element"),
       yLabel: titled("F [{unit}]", "force"), xLabel: titled("δ [{unit}]", "displacement") });
-    this.chart = h("div", {}, h("h2", { class: "buttons" }, "Loop of", this.of), this.loop.chart.element);
+    this.chart = h("div", {}, h("h2", { class: "buttons" }, t("Loop of"), this.of), this.loop.chart.element);
   }
 
   set(view) {
@@ -157,11 +159,9 @@ function line(row, name, last) {
 
 function said(edges) {
   if (!edges.length) return "";
-  const parts = edges.map(({ side, closes, ratio }) => {
-    const about = edges.length > 1 ? ` after rocking ${EDGES[side]}` : "";
-    return `${closes ? "close" : "need not close"} the base${about} against its dissipators (λ = ${number(ratio, 3)})`;
-  });
+  const texts = edges.map(({ side, closes, ratio }) => (edges.length > 1 ? EDGES[side] : "{text}")
+    .replace("{text}", CLOSING[Number(closes)]).replace("{ratio}", number(ratio, 3)));
   const [{ at }] = edges;
-  const design = at === null ? "" : ` At the largest rotation of these runs λ = ${number(at, 3)}.`;
-  return `Weight and prestress ${parts.join(" and ")}; above λ = 1 it centres itself.${design}`;
+  const design = at === null ? [] : [t("At the largest rotation of these runs λ = {ratio}.", { ratio: number(at, 3) })];
+  return [...texts, t("Above λ = 1 the base centres itself."), ...design].join(" ");
 }

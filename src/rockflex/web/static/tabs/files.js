@@ -1,12 +1,12 @@
 // Records from a visitor's files: one file, or a folder.
 
 import { attempt, get, isArchive, send, sendAll } from "../api.js";
-import { counted, h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
+import { h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
 import { box, field, fileBox, select, trouble } from "../form.js";
-import { t } from "../texts.js";
+import { counted, t } from "../texts.js";
 import { inUnit, unit as unitIn } from "../units.js";
 
-const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
+const UNITS = [["", t("as in the file")], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
 // `complain` takes messages by the path of their field.
 export function uploading(app, complain) {
@@ -22,8 +22,8 @@ export function uploading(app, complain) {
   async function take(file, path) {
     const vertical = path === "record.vertical";
     const under = vertical ? along || app.state.record.upload : "";
-    const large = vertical && !under ? "Choose the file of the horizontal component first." : tooLarge(file, most);
-    said.textContent = large ? "" : `Reading ${file.name} …`;
+    const large = vertical && !under ? t("Choose the file of the horizontal component first.") : tooLarge(file, most);
+    said.textContent = large ? "" : t("Reading {name} …", file);
     complain(large ? { [path]: large } : {});
     if (large) return;
     await attempt(async () => {
@@ -40,12 +40,12 @@ export function uploading(app, complain) {
   }
 
   return h("div", {},
-    field("record.upload", "File", input, { hint: `AT2, CSV, text columns, Excel, K-NET, ESM or COSMOS; up to ${most / 1e6} MB and ${duration} s` }),
-    field("record.vertical", "Vertical component", upwards, { hint: "optional; upwards positive, with the same step; or a column “vertical” in the file above" }),
-    select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "if the file does not state it" }),
-    box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only if the file has no times" }),
+    field("record.upload", t("File"), input, { hint: t("AT2, CSV, text columns, Excel, K-NET, ESM or COSMOS; up to {most} MB and {duration} s", { most: most / 1e6, duration }) }),
+    field("record.vertical", t("Vertical component"), upwards, { hint: t("optional; upwards positive, with the same step; or a column “vertical” in the file above") }),
+    select("upload.units", t("Unit of the acceleration"), UNITS, "", (value) => (unit = value), { hint: t("if the file does not state it") }),
+    box("upload.dt", t("Sampling step"), undefined, (value) => (step = value), { unit: "s", hint: t("only if the file has no times") }),
     said,
-    h("p", { class: "help" }, "A link does not contain the file: whoever opens it needs the file, too."));
+    h("p", { class: "help" }, t("A link does not contain the file: whoever opens it needs the file, too.")));
 }
 
 const HEAD = ["record", "PGA [{unit}]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
@@ -67,14 +67,14 @@ export function folder(app, complain) {
     },
   });
   const vertical = h("input", { type: "checkbox", id: "upwards", onchange: () => put({ vertical: vertical.checked }) });
-  const upwards = h("label", { class: "check" }, vertical, "With the vertical components of the stations");
-  const rows = scrolled("Records given", { class: "report" });
-  const stations = scrolled("Recordings", {});
+  const upwards = h("label", { class: "check" }, vertical, t("With the vertical components of the stations"));
+  const rows = scrolled(t("Records given"), { class: "report" });
+  const stations = scrolled(t("Recordings"), {});
   const notes = h("ul", { class: "notes" });
   const summary = h("p", { class: "answer", id: "taken" });
   const report = h("section", { id: "report", hidden: true },
-    h("h2", {}, "Your records"), summary, rows, notes,
-    h("details", {}, h("summary", {}, "Recordings: which components belong together"), stations));
+    h("h2", {}, t("Your records")), summary, rows, notes,
+    h("details", {}, h("summary", {}, t("Recordings: which components belong together")), stations));
 
   function put(patch) {
     app.change({ record: patch });
@@ -83,7 +83,7 @@ export function folder(app, complain) {
   async function give(files) {
     const mine = ++times; // the answer about files given later may come first
     const large = tooMuch(files);
-    said.textContent = large ? "" : `Reading ${files.length === 1 ? files[0].name : `${files.length} files`} …`;
+    said.textContent = large ? "" : files.length === 1 ? t("Reading {name} …", files[0]) : t("Reading {n} files …", { n: files.length });
     complain(large ? { "record.folder": large } : {});
     if (large) return;
     await attempt(async () => {
@@ -101,8 +101,8 @@ export function folder(app, complain) {
 
   function tooMuch(files) {
     const size = files.reduce((sum, each) => sum + (each.size > most && !isArchive(each) ? 0 : each.size), 0);
-    if (files.length > many) return `There are ${files.length} files, but the page takes ${many} at most. Choose fewer.`;
-    if (size > together) return `The files have ${(size / 1e6).toFixed(0)} MB, but the page takes ${together / 1e6} MB at most. Choose fewer.`;
+    if (files.length > many) return t("There are {n} files, but the page takes {most} at most. Choose fewer.", { n: files.length, most: many });
+    if (size > together) return t("The files have {size} MB, but the page takes {most} MB at most. Choose fewer.", { size: (size / 1e6).toFixed(0), most: together / 1e6 });
     return "";
   }
 
@@ -113,10 +113,12 @@ export function folder(app, complain) {
     const pairs = found.stations.filter((each) => each.horizontal.length === 2);
     const upright = pairs.filter((each) => each.vertical).length;
     said.textContent = "";
-    summary.textContent = `${counted(taken.length, "record")} taken, ${counted(left, "entry", "entries")} not. `
-      + `${pairs.length} of ${counted(found.stations.length, "recording has", "recordings have")} two horizontal components, ${upright} of these a vertical one, too.`;
+    summary.textContent = [
+      counted(taken.length, t("{n} record taken."), t("{n} records taken.")), counted(left, t("{n} entry not taken."), t("{n} entries not taken.")),
+      t("Recordings: {n}, with two horizontal components: {pairs}, of these with a vertical one, too: {upright}.", { n: found.stations.length, pairs: pairs.length, upright }),
+    ].join(" ");
     rows.replaceChildren(tableOf(HEAD.map((text) => subscript(text.replace("{unit}", unitIn("acceleration", "kN").name))), found.entries.map(row)));
-    stations.replaceChildren(tableOf(["recording", "horizontal", "vertical"], found.stations.map((each) => h("tr", {},
+    stations.replaceChildren(tableOf([t("recording"), t("horizontal"), t("vertical")], found.stations.map((each) => h("tr", {},
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
     notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
     upwards.hidden = !taken.some((entry) => entry.vertical);
@@ -125,16 +127,16 @@ export function folder(app, complain) {
   function row(entry) {
     if (!entry.taken) {
       return h("tr", { class: "left", "data-file": entry.file },
-        h("td", {}, entry.file), h("td", { colspan: HEAD.length - 1, class: "reason" }, entry.paired ? "" : "not taken: ", entry.reason));
+        h("td", {}, entry.file), h("td", { colspan: HEAD.length - 1, class: "reason" }, entry.paired ? entry.reason : t("not taken: {reason}", entry)));
     }
-    const use = h("button", { type: "button", "data-given": entry.name, title: "Use this record", onclick: () => (
+    const use = h("button", { type: "button", "data-given": entry.name, title: t("Use this record"), onclick: () => (
       put({ source: "folder", given: entry.name })) }, entry.name);
     const pga = h("td", { "data-value": entry.pga }, number(entry.pga / unitIn("acceleration", "kN").size, 3));
     const facts = [entry.magnitude, entry.distance, entry.vs30].map((value) => h("td", {}, number(value)));
-    const recording = [entry.recording ?? "–", entry.vertical ? " with vertical" : "", entry.reason ? ` (${entry.reason})` : ""];
+    const recording = [entry.recording ?? "–", entry.vertical ? t("with vertical") : "", entry.reason ? `(${entry.reason})` : ""].filter(Boolean);
     return h("tr", { "data-file": entry.file },
       h("td", {}, use), pga, h("td", {}, number(entry.duration)), h("td", {}, number(entry.dt)), ...facts,
-      h("td", {}, recording.join("")), h("td", {}, entry.component ?? "–"), h("td", {}, entry.format ?? "–"), h("td", {}, entry.file));
+      h("td", {}, recording.join(" ")), h("td", {}, entry.component ?? "–"), h("td", {}, entry.format ?? "–"), h("td", {}, entry.file));
   }
 
   const load = latest(async () => {
@@ -154,13 +156,14 @@ export function folder(app, complain) {
   }
 
   const element = h("div", { "data-path": "record.folder" },
-    field("given.folder", "Folder", input({ webkitdirectory: true, id: "folder" }), { hint: `up to ${many} files, ${together / 1e6} MB together and ${most / 1e6} MB each` }),
-    field("given.files", "Or files, or a ZIP archive", input({ id: "files" }),
-      { hint: "AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS, GeoNet; PEER’s search results or a flatfile among them give magnitude, distance and soil" }),
-    select("given.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "of files that do not state it" }),
-    box("given.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "of files that do not state it" }),
+    field("given.folder", t("Folder"), input({ webkitdirectory: true, id: "folder" }),
+      { hint: t("up to {many} files, {together} MB together and {most} MB each", { many, together: together / 1e6, most: most / 1e6 }) }),
+    field("given.files", t("Or files, or a ZIP archive"), input({ id: "files" }),
+      { hint: t("AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS, GeoNet; PEER’s search results or a flatfile among them give magnitude, distance and soil") }),
+    select("given.units", t("Unit of the acceleration"), UNITS, "", (value) => (unit = value), { hint: t("of files that do not state it") }),
+    box("given.dt", t("Sampling step"), undefined, (value) => (step = value), { unit: "s", hint: t("of files that do not state it") }),
     said, upwards, trouble(),
-    h("p", { class: "help" }, "The records stay on the server until it is restarted or needs the space; a link does not contain them."));
+    h("p", { class: "help" }, t("The records stay on the server until it is restarted or needs the space; a link does not contain them.")));
   return { element, report, refresh };
 }
 

@@ -16,49 +16,50 @@ export default function fragilityTab(app) {
   const choice = () => app.state.cloud;
   const { put, entry, list, suites } = choices(app, "cloud");
 
-  const scales = entry("scales", "Scale factors", { many: true, hint: "up to twenty, each from 0.01 to 20" });
+  const scales = entry("scales", t("Scale factors"), { many: true, hint: t("up to twenty, each from 0.01 to 20") });
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
-  const measure = list("measure", "Intensity measure", measuresOf(app.about, true));
+  const measure = list("measure", t("Intensity measure"), measuresOf(app.about, true));
   const limitStates = app.about.limit_states;
-  const limit = list("limit", "Limit state", limitStates.map((each) => [each.name, each.clause]));
-  const rotation = entry("rotation", "Rotation", { unit: "rad", hint: "0.0001 to 1.5" });
+  const limit = list("limit", t("Limit state"), limitStates.map((each) => [each.name, t(each.clause)]));
+  const rotation = entry("rotation", t("Rotation"), { unit: "rad", hint: t("0.0001 to 1.5") });
   const offered = CONFIDENCES.some(([value]) => value === choice().confidence) ? CONFIDENCES
     : [...CONFIDENCES, [choice().confidence, `${number(100 * choice().confidence)} %`]];
-  const confidence = select("cloud.confidence", "Confidence level of the bands", offered, choice().confidence,
+  const confidence = select("cloud.confidence", t("Confidence level of the bands"), offered, choice().confidence,
     (value) => put({ confidence: Number(value) }));
 
-  const curves = new Chart({ label: "Probability over intensity", yLabel: "probability", height: 320, xName: "IM", xLog: true });
+  const curves = new Chart({ label: t("Probability over intensity"), yLabel: t("probability"), height: 320, xName: "IM", xLog: true });
   const cloud = new Chart({
-    label: "Rotations of the runs over intensity", yLabel: "θ_max [rad]", height: 280, xName: "IM", xLog: true, yLog: true,
+    label: t("Rotations of the runs over intensity"), yLabel: "θ_max [rad]", height: 280, xName: "IM", xLog: true, yLog: true,
   });
   const keys = h("div");
   const remarks = new Remarks();
-  const table = scrolled("Fits", { id: "fits" });
+  const table = scrolled(t("Fits"), { id: "fits" });
   const drawing = h("div", { hidden: true },
-    h("h2", {}, "Fragility curves"), keys, curves.element,
-    h("p", { class: "hint" }, "Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs ",
-      "of similar intensity."),
+    h("h2", {}, t("Fragility curves")), keys, curves.element,
+    h("p", { class: "hint" }, t("Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs " +
+      "of similar intensity.")),
     table,
-    h("h2", {}, "All runs"), cloud.element,
-    h("p", { class: "hint" }, "Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom."),
+    h("h2", {}, t("All runs")), cloud.element,
+    h("p", { class: "hint" }, t("Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom.")),
     remarks.element);
   const empty = h("p", { class: "answer" },
-    "A quick look is computed first. Press Run to simulate every record of the suites at every scale factor; the curves appear ",
-    "while it runs.");
+    t("A quick look is computed first. Press Run to simulate every record of the suites at every scale factor; the curves appear " +
+    "while it runs."));
   const results = h("div", { class: "results" }, empty, drawing);
   const study = new Study(app, "cloud", {
-    verb: "Run", results, show,
+    results, show,
+    words: { run: t("Run"), again: t("Run again"), none: t("No run yet."), changed: t("The input has changed: run again.") },
     example: () => ({ models: [choice().models[0].replace("MDOF-S", "2DOF-S")], scales: [...new Set([choice().scales[0], choice().scales.at(-1)])] }),
     key: () => JSON.stringify([assumed(app.state, choice().models), recordsOf(app.state, choice().suites), choice().scales]),
   });
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, h("legend", {}, "Cloud of runs"), suites, scales, labels, study.element),
-      h("fieldset", {}, h("legend", {}, "Fragility curves"), limit, rotation, measure, confidence)),
+      h("fieldset", {}, h("legend", {}, t("Cloud of runs")), suites, scales, labels, study.element),
+      h("fieldset", {}, h("legend", {}, t("Fragility curves")), limit, rotation, measure, confidence)),
     results);
   results.append(study.downloads(element,
-    [["figure", "Rocking and overturning (SVG)"], ["table", "Runs (CSV)"]],
-    [["cloud-study", "Study (TOML)"], ["cloud-python", "Python lines"]]));
+    [["figure", t("Rocking and overturning (SVG)")], ["table", t("Runs (CSV)")]],
+    [["cloud-study", t("Study (TOML)")], ["cloud-python", t("Python lines")]]));
 
   function show(answer) {
     const label = axisOf(app.about, choice().measure);
@@ -88,7 +89,7 @@ export default function fragilityTab(app) {
         kind: "points", x: c.point_im.map((value) => value / size), y: c.point_rotation.map((v) => Math.max(v, FOOT)),
         color: c.look.color, alpha: 0.55, size: 2.2,
       })),
-      hlines: at ? [{ y: at, label: "limit", color: "c1" }] : [],
+      hlines: at ? [{ y: at, label: t("limit"), color: "c1" }] : [],
     });
     keys.replaceChildren(legend(all.map((c) => ({ label: c.model, ...c.look }))));
     table.replaceChildren(fits(answer.curves, label, own));

@@ -12,19 +12,19 @@ import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
 import { recordSet } from "../set.js";
 import { Player } from "../stage.js";
-import { t } from "../texts.js";
+import { language, t } from "../texts.js";
 import { inUnit, titled, unit, valueIn } from "../units.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
-const EDGES = [["left_edge", ", left"], ["right_edge", ", right"]];
+const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
 // Name, axis, kind of quantity, title, height, and the curves of each model where there are several.
 const PANELS = [
   ["rotation", "θ [{unit}]", "rotation", t("Rotation"), 150],
   ["slip", t("slip [{unit}]"), "displacement", t("Slip of the base"), 118],
   ["edges", t("edges [{unit}]"), "displacement", t("Rise of the edges"), 118, EDGES],
   ["displacement", "", "length", t("Displacement of the top"), 118],
-  ["element", "F [{unit}]", "force", t("Force of an element"), 118, [["element_force", ""]]],
+  ["element", "F [{unit}]", "force", t("Force of an element"), 118, [["element_force", "{model}"]]],
   ["base_moment", "M_b [{unit}]", "moment", t("Base moment"), 118],
   ["base_shear", "V_b [{unit}]", "force", t("Base shear"), 134],
 ];
@@ -35,8 +35,8 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["histories", "Histories (CSV)"],
-  ["python", "Python lines"], ["record", "Record (CSV)"],
+  ["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["animation", t("Animation (GIF)")], ["histories", t("Histories (CSV)")],
+  ["python", t("Python lines")], ["record", t("Record (CSV)")],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
@@ -45,26 +45,26 @@ export default function responseTab(app) {
   let view = null;
   let ghosts = []; // the responses of kept alternatives
   const player = new Player(follow, app.about.elements);
-  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const options = runs(app, () => view?.suggested_yield);
   const onpick = (time) => player.go(time);
   const charts = overTime(PANELS.map(([, yLabel, quantity, name, height, parts]) => (
     { label: t("{quantity} over time", { quantity: name }), yLabel: titled(yLabel, quantity), height, firstOnTop: true, onpick, symmetric: !parts })));
-  const panels = PANELS.map(([key, , , , , parts = [[key, ""]]], i) => [key, charts[i], parts]);
+  const panels = PANELS.map(([key, , , , , parts = [[key, "{model}"]]], i) => [key, charts[i], parts]);
   const loop = new Loop({ label: t("Base moment over rotation"), yLabel: titled("M_b [{unit}]", "moment"), xLabel: titled("θ [{unit}]", "rotation") });
   const energy = new Energy(() => load());
   const elements = new Elements(app.about, () => {
     energy.focus = elements.model.value;
     load();
   });
-  const seen = select("displacement", "Plotted top displacement", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
+  const seen = select("displacement", t("Plotted top displacement"), DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
     if (!view) return;
     choose(view);
     draw();
   });
   const keys = h("div", { id: "keys" });
-  const peaks = scrolled("Largest values", { id: "peaks" });
+  const peaks = scrolled(t("Largest values"), { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const checks = h("div");
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
@@ -78,11 +78,11 @@ export default function responseTab(app) {
   });
   const saved = project(app);
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
-    h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
-      h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
-        "drag or press + and − to zoom; double-click or press Escape to reset.")),
-    h("h2", {}, "Largest values"), peaks, kept.element, elements.table, checks,
-    h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
+    h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
+      h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
+        "drag or press + and − to zoom; double-click or press Escape to reset."))),
+    h("h2", {}, t("Largest values")), peaks, kept.element, elements.table, checks,
+    h("div", { class: "pair" }, h("div", {}, h("h2", {}, t("Moment and rotation")), loop.chart.element), elements.chart,
       energy.element));
   const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
     (value) => app.change({ record_set: { shown: value === "set" } }));
@@ -91,7 +91,7 @@ export default function responseTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       records, player.element, form,
-      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" })),
+      h("fieldset", {}, h("legend", {}, t("Runs")), scale, options.element, h("p", { class: "error foot", role: "alert" })),
       limitsForm(app), saved.element),
     results);
   results.append(downloads(app, element, FILES));
@@ -103,15 +103,15 @@ export default function responseTab(app) {
     // Of the element whose loop is drawn, with its number in the drawing of the base.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = titled(`F_${view.element + 1} [{unit}]`, "force");
     panels.forEach(([, chart, parts], p) => {
-      const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
-        x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
+      const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, name], k) => ({
+        x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: name.replace("{model}", m.label), ...m.look,
         width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
       })));
       chart.element.hidden = !series.length;
       chart.set({
         series, spans, xRange: [0, view.end],
         ticks: p === 0 ? first.impact_times : [],
-        vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
+        vlines: falls.map((x, i) => ({ x, color: "error", label: p + i === 0 ? t("falls") : "" })),
       });
     });
     const lifting = [...view.models, ...ghosts].filter((m) => m.lifts);
@@ -156,7 +156,7 @@ export default function responseTab(app) {
   const load = latest(async () => {
     const started = performance.now();
     const before = verdict.textContent;
-    const patience = setTimeout(() => (verdict.textContent = "Computing …"), PATIENCE);
+    const patience = setTimeout(() => (verdict.textContent = t("Computing …")), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
@@ -264,7 +264,7 @@ function named(fixed) {
   return fixed.label === "fixed" ? t("the same structure on a fixed base") : t("the fixed base of {model}", { model: fixed.label });
 }
 
-const listed = (words) => new Intl.ListFormat(document.documentElement.lang).format(words);
+const listed = (words) => new Intl.ListFormat(language).format(words);
 
 function table(view) {
   const held = view.elements.length > 0;

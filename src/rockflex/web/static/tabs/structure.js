@@ -67,10 +67,10 @@ export default function structureTab(app) {
     return app.state.ground ? without({ structure: {}, ...usual }) : usual;
   }
 
-  const own = [["", "custom structure"], ...presets.map((p, i) => [String(i), p.title])];
-  const preset = select("preset", "Start from", own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
-  const titles = Object.entries(kinds).map(([name, { title }]) => [name, title]);
-  const kind = select("kind", "Kind", titles, "frame", (name) => put(fresh(name), true));
+  const own = [["", t("custom structure")], ...presets.map((p, i) => [String(i), t(p.title)])];
+  const preset = select("preset", t("Start from"), own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
+  const titles = Object.entries(kinds).map(([name, { title }]) => [name, t(title)]);
+  const kind = select("kind", t("Kind"), titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
   const fields = h("div");
   let view = null;
@@ -85,16 +85,16 @@ export default function structureTab(app) {
   const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw());
   const saved = project(app);
   const facts = h("div");
-  const more = folded("modes", "Modes, masses, and which model to use", facts);
-  const results = h("div", { class: "results" }, kept.element, more, app.next("response", "Next: see forces and energies over time."),
+  const more = folded("modes", t("Modes, masses, and which model to use"), facts);
+  const results = h("div", { class: "results" }, kept.element, more, app.next("response", t("Next: see forces and energies over time.")),
     app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
   const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
-      folded("structure", "Structure: all fields", kind, field("structure.name", "Name", name),
+      folded("structure", t("Structure: all fields"), kind, field("structure.name", t("Name"), name),
         h("div", { "data-path": "structure" }, fields, trouble())),
-      held, below, folded("runs", "Models and assumptions", options.element),
-      folded("import", "Import matrices", importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
+      held, below, folded("runs", t("Models and assumptions"), options.element),
+      folded("import", t("Import matrices"), importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
     results);
 
   // The first preset of a kind, or default values.
@@ -121,7 +121,7 @@ export default function structureTab(app) {
     const left = [...specs.filter((spec) => !wanted(spec, values)).map((spec) => entry(now, spec, values)),
       ...own.filter((spec) => !wanted(spec, structure)).map(ofWhole)];
     fields.replaceChildren(...specs.filter((spec) => wanted(spec, values)).map((spec) => entry(now, spec, values)),
-      ...own.filter((spec) => wanted(spec, structure)).map(ofWhole), left.length ? folded("optional", "Optional fields", left) : "");
+      ...own.filter((spec) => wanted(spec, structure)).map(ofWhole), left.length ? folded("optional", t("Optional fields"), left) : "");
     if (focused) fields.querySelector(`[data-path="${CSS.escape(focused)}"]`)?.querySelector("input, select, button")?.focus();
     held.draw(structure.elements ?? []);
   }
@@ -168,7 +168,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(downloads(app, element, [["report", "Report (HTML)"]]));
+  results.append(downloads(app, element, [["report", t("Report (HTML)")]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
@@ -193,19 +193,19 @@ export default function structureTab(app) {
 
   function show() {
     return [
-      h("h2", {}, view.name || kinds[view.kind].title),
+      h("h2", {}, view.name || t(kinds[view.kind].title)),
       view.adequacy ? h("p", { class: "answer", id: "adequacy" }, view.adequacy.reason) : "",
-      view.adequacy ? h("p", { class: "hint" }, "This check uses masses and frequencies only. Impacts also excite higher modes, ",
-        "which affect the base shear most: compare with MDOF-S on the Response tab.") : "",
+      view.adequacy ? h("p", { class: "hint" }, t("This check uses masses and frequencies only. Impacts also excite higher modes, " +
+        "which affect the base shear most: compare with MDOF-S on the Response tab.")) : "",
       view.warnings.length
         ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
       view.freedoms ? h("p", { class: "hint", id: "freedoms" }, view.freedoms) : "",
       pictures(view),
       view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
-      view.section.length ? h("h2", {}, "Cross-section") : "",
+      view.section.length ? h("h2", {}, t("Cross-section")) : "",
       view.section.length ? h("dl", { class: "values", id: "section" }, view.section.map(parameter)) : "",
-      view.ground?.facts.length ? h("h2", {}, "Springs under the base") : "",
+      view.ground?.facts.length ? h("h2", {}, t("Springs under the base")) : "",
       view.ground?.facts.length ? h("dl", { class: "values", id: "springs" }, view.ground.facts.map(parameter)) : "",
       table(view),
     ];
@@ -228,11 +228,13 @@ export default function structureTab(app) {
   return { element, refresh, leave: () => shown.leave() };
 }
 
+const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
+
 function parameter(p) {
   const own = p.quantity ? unit(p.quantity) : unitFor(p.unit);
-  const value = p.none ? t("none: {reason}", { reason: p.none }) : number(fromSI(p.value, own));
+  const value = p.none ? t("none: {reason}", { reason: t(p.none) }) : number(fromSI(p.value, own));
   return h("div", {}, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
-    h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.help));
+    h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.edge ? EDGES[p.edge].replace("{fact}", t(p.help)) : t(p.help, p)));
 }
 
 function set(target, key, value) {
@@ -258,7 +260,7 @@ const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
 // Matrices from a file of a finite element program: `structure` returns the present structure, `put` takes the new one.
 function importMatrices(limit, structure, put) {
   const part = h("select", { id: "part" }, PARTS.map((name) => h("option", { value: name }, name)));
-  const input = fileBox(".npz,.csv", take, { "aria-label": "File of matrices" });
+  const input = fileBox(".npz,.csv", take, { "aria-label": t("File of matrices") });
   const said = trouble();
 
   async function take(file) {
@@ -276,26 +278,26 @@ function importMatrices(limit, structure, put) {
     });
   }
 
-  return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),
-    h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness, heights and, if there",
-      " are any, rotations, or one CSV file for each. Units: kg, N/m, m, rad; fixed base."),
-    h("p", { class: "hint" }, "heights: one for each degree of freedom, nan for those that do not move sideways; or rows of an",
-      " index and a height. rotations: the indices of the rotations in the plane, counted from 0; they need no height. Degrees",
-      " of freedom without mass are condensed out."),
-    h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV contains"), part), input, said);
+  return h("fieldset", { "data-path": "import" }, h("legend", {}, t("Import matrices")),
+    h("p", { class: "help" }, t("From any finite element program: a .npz file with the arrays mass, stiffness, heights and, if there" +
+      " are any, rotations, or one CSV file for each. Units: kg, N/m, m, rad; fixed base.")),
+    h("p", { class: "hint" }, t("heights: one for each degree of freedom, nan for those that do not move sideways; or rows of an" +
+      " index and a height. rotations: the indices of the rotations in the plane, counted from 0; they need no height. Degrees" +
+      " of freedom without mass are condensed out.")),
+    h("div", { class: "buttons" }, h("label", { for: "part" }, t("CSV contains")), part), input, said);
 }
 
 const SHAPES = [
-  ["", "none: EI and mass are given"], ["rectangle", "rectangle"], ["box", "hollow box"], ["circle", "circle"],
-  ["tube", "hollow circle"], ["composite", "composite of several parts"],
+  ["", t("none: EI and mass are given")], ["rectangle", t("rectangle")], ["box", t("hollow box")], ["circle", t("circle")],
+  ["tube", t("hollow circle")], ["composite", t("composite of several parts")],
 ];
 // New sizes in m by shape.
 const SIZES = {
   rectangle: { width: 1, depth: 1.5 }, box: { width: 2, depth: 2, wall: 0.25 }, circle: { diameter: 1.5 }, tube: { diameter: 1.5, wall: 0.2 },
 };
 const MATERIALS = [
-  ["concrete", { elastic_modulus: 3e10, density: 2500 }], ["steel", { elastic_modulus: 2.1e11, density: 7850 }],
-  ["timber", { elastic_modulus: 1.1e10, density: 450 }], ["masonry", { elastic_modulus: 5e9, density: 1900 }],
+  [t("concrete"), { elastic_modulus: 3e10, density: 2500 }], [t("steel"), { elastic_modulus: 2.1e11, density: 7850 }],
+  [t("timber"), { elastic_modulus: 1.1e10, density: 450 }], [t("masonry"), { elastic_modulus: 5e9, density: 1900 }],
 ];
 const [CONCRETE, STEEL] = MATERIALS.map(([, values]) => values);
 const OF_MATERIAL = ["elastic_modulus", "density"];
@@ -309,8 +311,8 @@ function section(about, path, spec, current, change) {
   const drawn = current();
   const shape = drawn?.shape ?? "";
   const partSpecs = about.section_part;
-  const choose = select(`${path}.shape`, "Cross-section", SHAPES, shape, (name) => change(turned(name), true),
-    { hint: "in place of bending stiffness and mass" });
+  const choose = select(`${path}.shape`, t("Cross-section"), SHAPES, shape, (name) => change(turned(name), true),
+    { hint: t("in place of bending stiffness and mass") });
 
   // The same material in another shape.
   function turned(name) {
@@ -340,8 +342,8 @@ function section(about, path, spec, current, change) {
   // A list that fills in the material.
   function material(get, put) {
     const same = MATERIALS.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
-    const names = [...MATERIALS.map(([name]) => [name, name]), ["", "own values"]];
-    return select("section.material", "Material", names, same?.[0] ?? "", (name) => {
+    const names = [...MATERIALS.map(([name]) => [name, name]), ["", t("own values")]];
+    return select("section.material", t("Material"), names, same?.[0] ?? "", (name) => {
       const found = MATERIALS.find(([each]) => each === name);
       if (found) put({ ...get(), ...found[1] }, true);
     });
@@ -358,13 +360,13 @@ function section(about, path, spec, current, change) {
     const get = () => current()?.parts?.[i];
     const parts = (next, anew) => change({ ...current(), parts: next }, anew);
     const put = (next, anew) => parts(current().parts.with(i, next), anew);
-    const own = select(`${place}.shape`, "Shape", SHAPES.slice(1, -1), each.shape, (name) => {
+    const own = select(`${place}.shape`, t("Shape"), SHAPES.slice(1, -1), each.shape, (name) => {
       const { elastic_modulus, density, offset } = get();
       put({ shape: name, ...SIZES[name], elastic_modulus, density, offset }, true);
     });
     const remove = h("button", { type: "button", onclick: () => (
-      parts(current().parts.filter((_, j) => j !== i), true)) }, "Remove");
-    return h("fieldset", { class: "group", "data-path": place }, h("legend", {}, `Part ${i + 1}`), own,
+      parts(current().parts.filter((_, j) => j !== i), true)) }, t("Remove"));
+    return h("fieldset", { class: "group", "data-path": place }, h("legend", {}, t("Part {number}", { number: i + 1 })), own,
       fieldsOf(place, partSpecs, get, ["offset"], put), drawn.parts.length > 1 ? remove : null, trouble());
   }
 
@@ -373,7 +375,7 @@ function section(about, path, spec, current, change) {
     const add = h("button", { type: "button", disabled: drawn.parts.length >= MOST, onclick: () => {
       const { parts } = current();
       change({ ...current(), parts: [...parts, { ...parts.at(-1) }] }, true);
-    } }, "Add a part");
+    } }, t("Add a part"));
     inner.push(...drawn.parts.map(part), add, field(path, spec.fields, "stiffness_factor", current, change));
   } else if (shape) inner.push(...fieldsOf(path, spec.fields, current, ["stiffness_factor"], change));
   return h("div", { class: "section", "data-path": path }, choose, inner, trouble());
@@ -393,7 +395,7 @@ function pictures(view) {
   const shapes = view.shapes.length ? view.shapes : [view.heights.map(() => 0)];
   return h("div", { class: "modes" }, shapes.map((shape, n) => picture(view, shape, n)),
     view.shapes_known ? null
-      : h("p", { class: "hint" }, "The mode shapes are not known and drawn as straight lines."));
+      : h("p", { class: "hint" }, t("The mode shapes are not known and drawn as straight lines.")));
 }
 
 function picture(view, shape, n) {
@@ -407,8 +409,8 @@ function picture(view, shape, n) {
   const middle = x(0) - (view.eccentricity / view.half_width) * b;
   const points = view.heights.map((z, i) => `${x(shape[i]).toFixed(1)},${y(z).toFixed(1)}`).join(" ");
   const floors = view.heights.length < 26 ? view.heights.slice(1) : [];
-  const texts = mode ? [`Mode ${n + 1}`, `T = ${number(mode.period, 3)} s`] : [];
-  const name = mode ? `Mode ${n + 1}, period ${number(mode.period)} s` : "Outline of the rigid block";
+  const texts = mode ? [t("Mode {number}", { number: n + 1 }), `T = ${number(mode.period, 3)} s`] : [];
+  const name = mode ? t("Mode {number}, period {period} s", { number: n + 1, period: number(mode.period) }) : t("Outline of the rigid block");
   return svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": name },
     svg("line", { x1: x(0), x2: x(0), y1: y(0), y2: y(top), stroke: ink("control"), "stroke-dasharray": "4 3" }),
     svg("line", { x1: middle - b, x2: middle + b, y1: y(0), y2: y(0), stroke: ink("structure"), "stroke-width": 4 }),
@@ -421,7 +423,7 @@ function picture(view, shape, n) {
 
 function table(view) {
   if (!view.modes.length)
-    return h("p", { class: "help" }, "A rigid block has no modes. Use the model “rigid”.");
+    return h("p", { class: "help" }, t("A rigid block has no modes. Use the model “rigid”."));
   const uplifted = view.modes[0].uplifted.length > 1 ? [
     t("Period while uplifted, right edge [s]"), t("Damping while uplifted, right edge"),
     t("Period while uplifted, left edge [s]"), t("Damping while uplifted, left edge"),
@@ -435,6 +437,6 @@ function table(view) {
     value(m.period), value(m.effective_mass, "mass"), percent(m.mass_share), value(m.effective_height, "length"), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
-    scrolled("Modes", {}, tableOf(head, rows, { id: "modes" })),
-    view.modes.length > ROWS ? h("p", { class: "hint" }, `and ${view.modes.length - ROWS} more`) : null);
+    scrolled(t("Modes"), {}, tableOf(head, rows, { id: "modes" })),
+    view.modes.length > ROWS ? h("p", { class: "hint" }, t("and {n} more", { n: view.modes.length - ROWS })) : null);
 }

@@ -1,0 +1,73 @@
+"""The table of an object, as a project has it, as the entry of a structure that files and forms have."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.structure.file._object_tables import CLASS, arguments_in_table
+from rockflex.structure.file._structure_entry import ELEMENTS, KINDS
+from rockflex.structure.file._structure_tables import PROFILES
+
+_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "YieldingStories")
+
+
+def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
+    """Return the content of a `StructureEntry` for the table of an object; nothing is built, and no value is checked.
+
+    Cross-sections and devices are numbers then, and floors of `RockingProperties` are left out. `place` names the table
+    in messages.
+
+    Raises
+    ------
+    InputError
+        If no kind of structure or element makes the class.
+    """
+    try:
+        return _entry_of_object_table(table)
+    except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{place}: no kind of structure in a file is {shown(table)}. Read it with read_structure or read_project."
+        ) from error
+
+
+def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
+    name: str = table[CLASS]
+    inner = _entry_of_object_table(table["structure"]) if name in _WRAPPERS else {}
+    rest: dict[str, Any] = arguments_in_table({key: each for key, each in table.items() if key != "structure"})
+    rest.pop("elements", None)
+    held = [{"kind": _kind_made(ELEMENTS, each), **arguments_in_table(each)} for each in table.get("elements", [])]
+    if elements := [*inner.pop("elements", []), *held]:
+        inner["elements"] = elements
+    if eccentricity := rest.pop("eccentricity", 0.0):
+        inner["eccentricity"] = eccentricity
+    if name == "Leaning":
+        inner["leaning_masses"] = rest["masses"]
+    elif name == "YieldingStories":
+        inner["stories"] = rest
+    elif name == "RockingProperties" and not rest["omega"]:
+        inner["block"] = _block_of_properties(rest)
+    elif name not in _WRAPPERS:
+        if "bending_stiffness" in rest:
+            rest.pop("section", None)  # which gave stiffness and mass
+        for key in PROFILES if name == "Beam" else ():
+            if isinstance(rest.get(key), list):  # of heights and of values there
+                z, rest[key] = rest[key]
+                if rest.setdefault("z", z) != z:
+                    raise ValueError("a beam whose quantities vary at other heights each")
+        left = ("floors", *([] if rest.get("stories") else ["stories"]))
+        inner[_kind_made(KINDS, table)] = {key: each for key, each in rest.items() if key not in left}
+    return inner
+
+
+def _kind_made(tables: Mapping[str, Any], table: dict[str, Any]) -> str:
+    return {getattr(each.makes, "__name__", ""): kind for kind, each in tables.items()}[table[CLASS]]
+
+
+def _block_of_properties(given: dict[str, Any]) -> dict[str, float]:
+    half, height, mass = given["half_width"], given["l0r"] / given["m_tot"], given["m_tot"]
+    diagonal = math.hypot(half, height)
+    if not math.isclose(given["i_theta"], 4.0 / 3.0 * mass * diagonal**2, rel_tol=1e-9):
+        raise ValueError("a body without modes that is no homogeneous block")
+    return {"slenderness": math.atan2(half, height), "half_diagonal": diagonal, "mass": mass}
