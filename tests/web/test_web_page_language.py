@@ -133,8 +133,14 @@ def test_the_language_is_chosen_and_kept(marked, client) -> None:
     assert marked.state() == state | {"language": "de"}
     scale = page.locator('[data-path="scale"]')
     assert "0,01" in scale.inner_text()
-    marked.fill("scale", "1,5")
-    assert (marked.state()["scale"], scale.locator('input[type="text"]').input_value()) == (1.5, "1.5")
+    for typed, value, shown in (("1.5", 1.5, "1,5"), ("1,234", 1.234, "1,234")):
+        marked.fill("scale", typed)
+        assert (marked.state()["scale"], scale.locator('input[type="text"]').input_value()) == (value, shown)
+    marked.tab("fragility")
+    scales = page.locator('[data-path="cloud.scales"] input')
+    assert scales.input_value() == "0,5; 1; 2"
+    marked.fill("cloud.scales", "0,25; 1,5")
+    assert marked.state()["cloud"]["scales"] == [0.25, 1.5]
     page.goto("about:blank")
     marked.open("/")
     assert page.evaluate(lang) == "de"

@@ -1,7 +1,7 @@
 // Fields with a label, a unit, limits, help and space for an error.
 
 import { h, number, symbol } from "./dom.js";
-import { t } from "./texts.js";
+import { COMMA, t } from "./texts.js";
 import { fromSI, toSI, unitFor } from "./units.js";
 
 let serial = 0;
@@ -76,13 +76,14 @@ export function folded(name, title, ...children) {
 }
 
 const DECIMAL = /^[+-]?\d+,\d+(e[+-]?\d+)?$/i; // with a comma
-const THOUSANDS = /^[+-]?[1-9]\d{0,2},\d{3}(\.\d*)?$/; // perhaps: 1,234 may be either
+const THOUSANDS = /^[+-]?[1-9]\d{0,2},\d{3}(\.\d*)?$/; // perhaps: in English 1,234 may be either
+const unclear = (word) => !COMMA && THOUSANDS.test(word);
 
 // Text that is not a number, or may be one of two, is sent unchanged: the server's message names the field.
 export function parseNumber(text) {
   const clean = text.trim().replace("−", "-");
   if (/^[+]?(inf|infinity|∞)$/i.test(clean)) return "inf";
-  const point = DECIMAL.test(clean) && !THOUSANDS.test(clean) ? clean.replace(",", ".") : clean;
+  const point = DECIMAL.test(clean) && !unclear(clean) ? clean.replace(",", ".") : clean;
   return point !== "" && Number.isFinite(Number(point)) ? Number(point) : clean;
 }
 
@@ -92,8 +93,8 @@ function list(text, { one = false, separates = false } = {}) {
   const words = text.replaceAll("−", "-").split(/\s*,\s+|[;\s]+/).filter(Boolean);
   const commas = words.filter((word) => word.includes(","));
   if (!separates && commas.length) {
-    const alone = words.length === 1 && !one && DECIMAL.test(words[0]) && !/^[+-]?0,/.test(words[0]);
-    if (alone || words.some((word) => THOUSANDS.test(word))) return words;
+    const alone = !COMMA && words.length === 1 && !one && DECIMAL.test(words[0]) && !/^[+-]?0,/.test(words[0]);
+    if (alone || words.some(unclear)) return words;
     if (commas.every((word) => DECIMAL.test(word))) return words.map(parseNumber);
   }
   return words.flatMap((word) => word.split(",")).filter(Boolean).map(parseNumber);
@@ -127,26 +128,29 @@ function read(type, text) {
   return parseNumber(text);
 }
 
-// Show numbers with commas as they were understood.
+// Show numbers with commas, or in the language's other sign, as they were understood.
 function understood(control, value) {
   const clear = (each) => typeof each === "number" || (typeof each === "object" && Object.values(each).every(clear));
-  if (control.value.includes(",") && clear(value)) control.value = write(value);
+  if ((control.value.includes(",") || (COMMA && control.value.includes("."))) && clear(value)) control.value = write(value);
   return value;
 }
 
 function write(value) {
   if (value === undefined || value === null) return "";
   if (typeof value === "object" && !Array.isArray(value))
-    return Object.entries(value).map(([index, each]) => `${index}: ${plain(each)}`).join(", ");
+    return Object.entries(value).map(([index, each]) => `${index}: ${plain(each)}`).join(BETWEEN);
   if (!Array.isArray(value)) return plain(value);
-  if (Array.isArray(value[0])) return value.map((row) => row.map(plain).join(", ")).join("\n");
-  return value.map(plain).join(", ");
+  if (Array.isArray(value[0])) return value.map((row) => row.map(plain).join(COMMA ? " " : ", ")).join("\n");
+  return value.map(plain).join(BETWEEN);
 }
 
-// Without long rows of zeros.
+const BETWEEN = COMMA ? "; " : ", "; // numbers of a list
+
+// With the decimal sign of the language, without long rows of zeros.
 function plain(value) {
   const long = typeof value === "number" && Math.abs(value) >= 1e7;
-  return long ? value.toExponential().replace("e+", "e") : String(value);
+  const digits = long ? value.toExponential().replace("e+", "e") : String(value);
+  return COMMA && typeof value === "number" ? digits.replace(".", ",") : digits;
 }
 
 // One field of a table that the server describes; `change(value)` is called with undefined where it was left empty.
@@ -258,11 +262,11 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   const range = h("input", {
     type: "range", min: to(low), max: to(high), step: log ? 0.005 : step, "aria-label": label,
     oninput: () => {
-      entry.value = fromSI(from(range.value), element.unit, 3);
+      entry.value = plain(fromSI(from(range.value), element.unit, 3));
       say();
-      change(toSI(Number(entry.value), element.unit), true);
+      change(toSI(parseNumber(entry.value), element.unit), true);
     },
-    onchange: () => change(toSI(Number(entry.value), element.unit), false),
+    onchange: () => change(toSI(parseNumber(entry.value), element.unit), false),
   });
   const entry = h("input", {
     type: "text", class: "short", inputmode: "decimal", autocomplete: "off",
@@ -276,7 +280,7 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   element.querySelector(".row").prepend(range);
   const say = () => range.setAttribute("aria-valuetext", `${entry.value} ${element.unit.name}`.trim());
   element.setValue = (v) => {
-    if (document.activeElement !== entry) entry.value = fromSI(v, element.unit);
+    if (document.activeElement !== entry) entry.value = write(fromSI(v, element.unit));
     if (document.activeElement !== range) range.value = to(v);
     say();
   };

@@ -17,5 +17,8 @@ export const t = (text, values = {}) => (catalogue[text] ?? text).replace(/\{(\w
 // One of two texts with a count: counted(2, t("{n} record"), t("{n} records")).
 export const counted = (n, one, several) => (n === 1 ? one : several).replace("{n}", n);
 
+// Whether numbers have a decimal comma.
+export const COMMA = language !== "en";
+
 // The digits of a number with the decimal sign of the language, and a true minus.
-export const written = (digits) => digits.replace("-", "−").replace(".", language === "en" ? "." : ",");
+export const written = (digits) => digits.replace("-", "−").replace(".", COMMA ? "," : ".");
