@@ -20,7 +20,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import is_color_like, to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
+from matplotlib.ticker import FixedFormatter, Formatter
 
 from rockflex._checks import is_one_of
 from rockflex._errors import InputError
@@ -449,15 +449,20 @@ class _CommaFormatter(Formatter):
         self.written.set_locs(locs)
 
 
+_MATHEMATICS = re.compile(r"(?<!\\)\$[^$]*\$")
+_COMMA = re.compile(r"(?<=\d),(?=\d)")  # which mathematics would follow with a space
+
+
 def _write_decimal_commas(figure: Figure) -> None:
     """Write the numbers at ticks and in texts with decimal commas; names at ticks stay as they are."""
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             written = axis.get_major_formatter()
-            if isinstance(written, ScalarFormatter | LogFormatter):
+            if not isinstance(written, FixedFormatter):
                 axis.set_major_formatter(_CommaFormatter(written))
     for text in figure.findobj(Text):
-        text.set_text(with_decimal_commas(text.get_text()))
+        words = with_decimal_commas(text.get_text())
+        text.set_text(_MATHEMATICS.sub(lambda found: _COMMA.sub("{,}", found[0]), words))
 
 
 def _wrap_figure_texts(figure: Figure) -> None:

@@ -115,7 +115,8 @@ def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: fl
     power = math.floor(math.log10(largest))
     tick = float(f"{math.floor(largest / 10.0**power)}e{power}")  # rounded down to its first digit
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
-    axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
+    axes.set_xticks([-tick, 0.0, tick])
+    axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}".replace("-", "−"))
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
     axes.set_title(_mode_description(modes, n, total), fontsize=figures.scaled_font_size(8.0))
 
