@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex._units import Decimal
+from rockflex._units import Decimal, with_decimal_commas
 
 Language = Literal["en", "de", "it", "fr", "es"]
 CATALOGUES = Path(__file__).parent / "languages"
@@ -53,10 +53,13 @@ def chosen_language() -> tuple[Language, Decimal]:
 
 
 def translated(text: str, **values: Any) -> str:
-    """Return a text in the chosen language, with values for the names in its braces: "{n} records".
+    """Return a text in the chosen language and decimal sign, with values for the names in its braces: "{n} records".
 
     A text of a user, which is in no catalogue, is returned as it is. Write a plural as two texts:
     ``translated("{n} record" if n == 1 else "{n} records", n=n)``.
     """
-    found = catalogue(_CHOSEN.get()[0]).get(text, text)
-    return found.format(**values) if values else found
+    name, decimal = _CHOSEN.get()
+    found = catalogue(name).get(text, text)
+    if not values:
+        return found
+    return with_decimal_commas(found.format(**values)) if decimal == "," else found.format(**values)

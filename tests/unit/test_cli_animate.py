@@ -14,7 +14,7 @@ from rockflex.plot import animation
 
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning", "ignore::ResourceWarning")
 
-STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
+STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 SMALL = ("--width", "320", "--fps", "5", "--panels", "rotation,base_moment", "--stop", "2")
 
 

@@ -13,7 +13,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.cli import app
 
-EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
 
 

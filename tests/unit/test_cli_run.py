@@ -19,7 +19,7 @@ from rockflex.cli import _console as console
 from rockflex.response import PEAKS
 from rockflex.study import PreparedCase
 
-EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
 FRAME = make_frame()
 FLAGS = [

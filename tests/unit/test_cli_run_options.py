@@ -15,7 +15,7 @@ from rockflex.cli import _batch, app
 from rockflex.models import RockingModel, _label
 from rockflex.study import PreparedCase
 
-STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
+STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 FRAME = make_frame()
 RECORD = "fema-p695-far-field/FF-2-a"
 MOTION = rf.load_suite("fema-p695-far-field")["FF-2-a"]

@@ -19,9 +19,15 @@ from page_texts import texts_of_answers, texts_of_scripts
 from report_case import FRAME, HELD, PULSE, SPRINGS, runs
 from rockflex._language import Language, catalogue, chosen_language, translated, use_language
 from rockflex.cli._app import app
+from rockflex.fragility import LIMIT_STATES
+from rockflex.fragility._jackknife import ONE_RECORDING
+from rockflex.fragility._outcomes import FEW_RUNS, PARTS
 from rockflex.modal import BARS
+from rockflex.plot._design import _AXES
+from rockflex.plot._fragility import _QUANTITIES as _CLOUD_QUANTITIES
 from rockflex.plot._history import _QUANTITIES
 from rockflex.plot._loops import _ELEMENT_NAMES
+from rockflex.plot._motion import _NAMES as _SPECTRA
 from rockflex.plot._record_set import LABELS, LINES
 from rockflex.report._publication_files import jinja_templates_in
 from rockflex.report.run._report_tables import ASSUMPTIONS, SIDES, STATUS
@@ -71,6 +77,15 @@ def labels():
     yield from (text for demand in DEMANDS.values() for text in (demand.symbol, demand.compared_as))
     yield from (each.name for each in KINDS)
     yield from (text for each in _QUANTITIES.values() for text in (each.symbol, each.words))
+    yield from (
+        *FEW_RUNS,
+        *PARTS,
+        ONE_RECORDING,
+        *_SPECTRA.values(),
+        *(words for _, words, _ in _CLOUD_QUANTITIES.values()),
+    )
+    yield from (each.symbol for each in LIMIT_STATES.values() if "\\" not in each.symbol)
+    yield from (text for name, (_, words, _) in _AXES.items() for text in (words, name.replace("_", " ")))
     yield from (*_ELEMENT_NAMES.values(), *LABELS.values(), *(label for *_, label in LINES.values()))
     yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
     yield from texts_of_answers()

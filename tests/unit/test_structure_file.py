@@ -15,7 +15,7 @@ from builders import PROPERTIES, frame_values
 from rockflex.modal import PLACE
 from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, TomlTable, parse_toml_table, schema_key_of_field
 
-EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
 MASSES, STIFFNESS, HEIGHTS = [20e3, 90e3], [[34e6, -10.5e6], [-10.5e6, 4.2e6]], [8.0, 16.0]
 LUMPED = {"masses": MASSES, "stiffness": STIFFNESS, "heights": HEIGHTS, **BASE}

@@ -20,7 +20,7 @@ from rockflex.study._prepared_case import RunOptions, yielding_model_labels
 from rockflex.study._result_tables import OF_ELEMENTS, OF_GROUND
 from rockflex.study.spec import RunOptionKeys
 
-STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
+STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 BASE = {
     "structures": [{"name": "one", "frame": frame_values(n_stories=2, period=0.5, aspect_ratio=6.0)}],
     "records": {"suites": ["el-centro-1940"]},

@@ -188,6 +188,7 @@ def test_a_call_with_a_folder_stores_what_it_returns(kind, tmp_path):
     found = rf.StudyFolder.load(tmp_path / "study")
     assert found.finished
     assert found.manifest.spec["study"] == kind
+    assert found.manifest.spec.get("demands") == (None if kind == "population" else {"roof": "own_study.roof"})
     again = CALLS[kind](folder=tmp_path / "study", progress=lambda done, total: told.append((done, total)))
     pd.testing.assert_frame_equal(again, whole)
     assert told[-1][0] == told[-1][1]

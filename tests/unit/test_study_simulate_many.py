@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
-from builders import frame_values
+from builders import frame_values, make_frame
 from rockflex.response import PEAKS
 from rockflex.solve import engine
 from rockflex.solve._failures import Status
@@ -370,3 +370,13 @@ def test_a_study_that_is_stopped_leaves_its_parts_and_no_thread(stop, tmp_path):
     assert threading.active_count() == before
     assert len(rf.StudyFolder.load(tmp_path).missing()) == 3
     pd.testing.assert_frame_equal(rf.run_study(CLOUD, tmp_path, workers=2), rf.run_study(CLOUD, workers=1))
+
+
+def test_records_of_a_selection_are_the_scaled_ones():
+    chosen = rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, ground="C"), 3, (0.2, 2.0))
+    table = rf.simulate_many(make_frame(), chosen, "2DOF-S")
+    again = rf.simulate_many(make_frame(), chosen.suite, "2DOF-S")
+    assert list(table["motion"]) == [name for (name,) in chosen.names]
+    assert list(table["max_rotation"]) == list(again["max_rotation"])
+    cloud = rf.run_cloud(make_frame(), chosen, "2DOF-S", scales=(1.0,))
+    assert sorted(cloud["motion"]) == sorted(table["motion"])

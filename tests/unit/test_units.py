@@ -39,7 +39,7 @@ DIMENSIONS = {
     "time": (0, 0, 1),
     "ratio": (0, 0, 0),
 }
-EXAMPLES = Path(rf.__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 VALUE = re.compile(r'data-of="(\w+)" data-value="([^"]+)">([^<]+)<')
 
 

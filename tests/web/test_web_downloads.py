@@ -237,7 +237,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
         button.click()
         page.wait_for_function("b => b.ariaBusy === 'true'", arg=button.element_handle())
         button.click()  # once is enough
-        page.wait_for_function("() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('.downloads').innerText)")
+        page.wait_for_function("() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('.downloads:has([data-file=animation])').innerText)")
         assert 0.0 < page.locator(".making progress").evaluate("bar => bar.value") < 1.0
     content = got.value.path().read_bytes()
     assert got.value.suggested_filename == "animation.gif"
@@ -246,7 +246,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
         assert image.n_frames > 100
         assert image.size[0] == 800
     page.wait_for_function("b => b.ariaBusy === 'false'", arg=button.element_handle())
-    assert page.locator(".downloads [role=status]").inner_text() == "Saved."
+    assert page.locator(".downloads:has([data-file=animation]) [role=status]").inner_text() == "Saved."
     assert not visitor.said
 
 
@@ -258,7 +258,7 @@ def test_an_animation_can_be_cancelled_on_the_page(visit, link, client) -> None:
     page.on("download", lambda each: saved.append(each))
     page.get_by_role("button", name="Animation (GIF)").click()
     page.locator(".making").get_by_role("button", name="Cancel").click()
-    page.locator(".downloads").get_by_text("Cancelled.", exact=True).wait_for()
+    page.locator(".downloads:has([data-file=animation])").get_by_text("Cancelled.", exact=True).wait_for()
     assert page.locator('[data-file="animation"]').evaluate("b => b.ariaBusy") == "false"
     assert saved == []
 

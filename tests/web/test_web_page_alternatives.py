@@ -114,7 +114,8 @@ def test_a_project_is_saved_and_opened(visitor, visit, tmp_path) -> None:
     limited = rf.Project({"a": make_frame()}, rf.one_sine_pulse(3.0, 0.8), limits=rf.CheckLimits(friction=0.3))
     limited.save(tmp_path / "limited.rockflex")
     other.upload("Open a project", "limited.rockflex", (tmp_path / "limited.rockflex").read_bytes())
-    other.page.get_by_text("Not on the page, and not in projects that it saves: limits of checks.").wait_for()
+    other.page.wait_for_function("() => !document.querySelector('#differences tr')")
+    assert other.state()["limits"]["friction"] == 0.3
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

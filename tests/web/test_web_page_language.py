@@ -6,6 +6,7 @@ import re
 import pytest
 
 from page_texts import texts_of_answers, texts_of_scripts
+from rockflex import _language
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
@@ -32,14 +33,21 @@ LEFT = """([left, sentences]) => {
     for (const of of document.querySelectorAll(`[${name}]`)) keep(of.getAttribute(name), of);
   return [...found].filter((text) => !left.includes(text));
 }"""
-# Sentences and a table of the server; names of languages, units, arrays of files and records; the example of a table.
-SENTENCES = "#adequacy, #warnings, .warning, #freedoms, .notes, .error, #differences, .checks .words, "
-SENTENCES += "#language, #units, #part, .thumbs, #record-title, textarea"
+# Messages of errors; names of languages, units, arrays of files and records; the example of a table.
+SENTENCES = ".error, #language, #units, #part, .thumbs, #record-title, textarea"
+
+
+class Marks(dict[str, str]):
+    """A catalogue of the server that puts every text in quotation marks."""
+
+    def get(self, text: str, _: object = None) -> str:
+        return f"«{text}»"
 
 
 @pytest.fixture
-def marked(visit):
-    """A visitor whose language has every text in quotation marks."""
+def marked(visit, monkeypatch):
+    """A visitor whose language has every text in quotation marks, on the page and in what the server words."""
+    monkeypatch.setattr(_language, "catalogue", lambda name: Marks() if name == "de" else {})
     visitor = visit(locale="de-DE")
     catalogue = {text: f"«{text}»" for text in texts_of_scripts() | texts_of_answers()}
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(json=catalogue))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._values import Value
 from rockflex.fragility import _jackknife, _regression
 from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
@@ -48,10 +49,13 @@ class UnanimousOutcome:
     @property
     def note(self) -> str:
         """The conclusion in words."""
-        side = "above" if self.outcome else "below"
-        return (
-            f"This gives only a bound: with 95 % confidence the probability, averaged over these runs, is {side} "
-            f"{100.0 * self.bound(0.95):.3g} %."
+        return translated(
+            "This gives only a bound: with 95 % confidence the probability, averaged over these runs, is above {bound} "
+            "%."
+            if self.outcome
+            else "This gives only a bound: with 95 % confidence the probability, averaged over these runs, is below "
+            "{bound} %.",
+            bound=f"{100.0 * self.bound(0.95):.3g}",
         )
 
     def bound(self, confidence: float = 0.95) -> float:
@@ -263,15 +267,24 @@ def fit_logistic_curve(
     if separated:
         low, high = _outcome_separation_gap(x, y)
         notes.append(
-            f"Separated between im = {low:.4g} and {high:.4g}: maximum likelihood has no finite slope, so "
-            "Firth's penalty was used. Median and slope are uncertain by the width of that gap."
+            translated(
+                "Separated between im = {low} and {high}: maximum likelihood has no finite slope, so Firth's penalty "
+                "was used. Median and slope are uncertain by the width of that gap.",
+                low=f"{low:.4g}",
+                high=f"{high:.4g}",
+            )
         )
     elif method == "Firth":
-        notes.append("Nearly separated: maximum likelihood did not converge, so Firth's penalty was used.")
+        notes.append(translated("Nearly separated: maximum likelihood did not converge, so Firth's penalty was used."))
     if b1 <= 0.0:
-        notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
+        notes.append(
+            translated(
+                "The probability does not rise with im (b1 = {slope}), so there is no median or dispersion.",
+                slope=f"{b1:.3g}",
+            )
+        )
     if count == 1:
-        notes.append(_jackknife.ONE_RECORDING)
+        notes.append(translated(_jackknife.ONE_RECORDING))
     events = int(y.sum())
     ends, note = (math.exp(x.min()), math.exp(x.max())), " ".join(notes)
     fit = LogisticFit(b0, b1, covariance, y.size, events, method, separated, note, count, damping, ends)

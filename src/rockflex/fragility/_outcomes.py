@@ -12,6 +12,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
@@ -28,6 +29,12 @@ from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, describe_logistic_curve, fit_logistic_curve
 
 MIN_RUNS = 10  # fewer runs give a note
+FEW_RUNS = (
+    "Only {count} of {n} runs do not rock: fits of these runs are uncertain.",
+    "Only {count} of {n} runs rock without overturning: fits of these runs are uncertain.",
+    "Only {count} of {n} runs overturn: fits of these runs are uncertain.",
+)
+PARTS = ("overturning", "rocking", "initiation", "rotation")
 _Part: TypeAlias = tuple[Array, Array | None]
 """Covariance of the parameters of a part for independent runs, and its parameters without each recording."""
 
@@ -355,8 +362,8 @@ def fit_outcomes(
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
-        OutcomeNote(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain.")
-        for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
+        OutcomeNote(translated(text, count=count, n=falls.size))
+        for count, text in zip(counts, FEW_RUNS, strict=True)
         if 0 < count < MIN_RUNS
     ]
     damping = measure_damping_of_column(im, damping)
@@ -413,25 +420,27 @@ class _OutcomePartFits(NamedTuple):
     def some(self, chosen: Bools) -> RecordingGroups | None:
         return None if self.recordings is None else self.recordings.some(chosen)
 
+    def note(self, part: str, text: object) -> None:
+        self.notes.append(OutcomeNote(f"{translated(part)}: {text}", part))
+
     def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, _Part]:
         """The curve of an outcome of some of the runs."""
         outcome, some, none = happened[chosen], self.some(chosen), (np.zeros((2, 2)), None)
         if outcome.size == 0:
-            self.notes.append(OutcomeNote(f"{name}: all runs overturned, so there is nothing to fit.", name))
+            self.note(name, translated("all runs overturned, so there is nothing to fit."))
             return None, none
         if outcome.all() or not outcome.any():
             alike = UnanimousOutcome(bool(outcome[0]), outcome.size, 0 if some is None else int(some.held.sum()))
-            self.notes.append(
-                OutcomeNote(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name)
-            )
+            count = translated("all of {n} runs." if alike.outcome else "none of {n} runs.", n=alike.n)
+            self.note(name, f"{count} {alike.note}")
             return alike, none
         try:
             fit, replicates = fit_logistic_curve(log_measures(self.im[chosen]), outcome, some, self.damping)
         except (InputError, SolverError) as error:
-            self.notes.append(OutcomeNote(f"{name}: {error}", name))
+            self.note(name, error)
             return None, none
         if fit.note:
-            self.notes.append(OutcomeNote(f"{name}: {fit.note}", name))
+            self.note(name, fit.note)
         return fit, (fit.covariance, replicates)
 
     def cloud(self, rotation: Array, rocked: Bools) -> tuple[CloudFit | None, _Part]:
@@ -440,7 +449,7 @@ class _OutcomePartFits(NamedTuple):
             x, y = log_measures(self.im[rocked]), np.log(rotation[rocked])
             fit, replicates = fit_cloud_line(x, y, self.some(rocked))
         except InputError as error:
-            self.notes.append(OutcomeNote(f"rotation: {error}", "rotation"))
+            self.note("rotation", error)
             return None, (np.zeros((3, 3)), None)
         covariance = np.zeros((3, 3))
         covariance[:2, :2], covariance[2, 2] = fit.covariance, 0.5 / (fit.n - 2.0)

@@ -8,15 +8,11 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal._rocking import SUM_TOLERANCE, RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted_frequencies
-
-_SHEAR_NOTE = (
-    "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it does "
-    "in the base shear of models that end in -R."
-)
 
 
 @dataclass(frozen=True)
@@ -301,53 +297,113 @@ def _adequate_model_label(modes: int) -> str:
 
 def _reason_for_rotation(a: Adequacy) -> str:
     if a.enough is None:
-        few = "One mode is" if a.n_modes == 1 else f"The {a.n_modes} available modes are"
-        return f"{few} not enough: {_describe_truncation_errors(a, a.n_modes)}. Give more modes."
-    taken = _describe_truncation_errors(a, a.enough)
+        return translated(
+            "One mode is not enough: {errors}. Give more modes."
+            if a.n_modes == 1
+            else "The {n} available modes are not enough: {errors}. Give more modes.",
+            n=a.n_modes,
+            errors=_describe_truncation_errors(a, a.n_modes),
+        )
+    errors = _describe_truncation_errors(a, a.enough)
     if a.enough == 1:
-        return f"2DOF-S is enough: with one mode, {taken}."
-    before = _describe_truncation_errors(a, a.enough - 1, short=True)
-    return f"Use {a.model}: with {_mode_count_text(a.enough - 1)}, {before}; with {a.enough}, {taken}."
+        return translated("2DOF-S is enough: with one mode, {errors}.", errors=errors)
+    return translated(
+        "Use {model}: with {fewer}, {before}; with {n}, {errors}.",
+        model=a.model,
+        fewer=_mode_count_text(a.enough - 1),
+        before=_describe_truncation_errors(a, a.enough - 1, short=True),
+        n=a.enough,
+        errors=errors,
+    )
 
 
 def _describe_truncation_errors(a: Adequacy, k: int, *, short: bool = False) -> str:
     """Describe the fractions that k modes leave out and their errors; with `short`, only errors above the tolerance."""
     t, bound = a.tolerance, a.frequency_bound[k - 1]
-    at_most = "at most " if np.nanmax(a.reference_error) > 5e-4 else ""
-    named = [
-        (a.base_moment_left[k - 1], t.base_moment, "{} of the base moment is left out"),
-        (bound[0], t.first_frequency, f"the first uplifted frequency is {at_most}{{}} too high"),
-    ]
-    if short:
-        named = [each for each in named if each[0] > each[1]]
+
+    def error_text(value: float) -> str:
+        share = _percent_text(value)
+        return translated("at most {share}", share=share) if np.nanmax(a.reference_error) > 5e-4 else share
+
+    said: list[str] = []
+    left = a.base_moment_left[k - 1]
+    if not short or left > t.base_moment:
+        said.append(
+            translated(
+                "{share} of the base moment is left out (allowed: {limit})",
+                share=_percent_text(left),
+                limit=_percent_text(t.base_moment),
+            )
+        )
+    if not short or bound[0] > t.first_frequency:
+        said.append(
+            translated(
+                "the first uplifted frequency is {share} too high (allowed: {limit})",
+                share=error_text(bound[0]),
+                limit=_percent_text(t.first_frequency),
+            )
+        )
     if k > 1 and (not short or bound[1] > t.second_frequency):
-        second = "the second" if named else "the second uplifted frequency"
-        named.append((bound[1], t.second_frequency, f"{second} is {at_most}{{}} too high"))
-    said = [text.format(_percent_text(value)) + f" (allowed: {_percent_text(limit)})" for value, limit, text in named]
+        said.append(
+            translated(
+                "the second is {share} too high (allowed: {limit})"
+                if said
+                else "the second uplifted frequency is {share} too high (allowed: {limit})",
+                share=error_text(bound[1]),
+                limit=_percent_text(t.second_frequency),
+            )
+        )
     *others, last = said
-    return f"{', '.join(others)} and {last}" if others else last
+    return translated("{others} and {last}", others=", ".join(others), last=last) if others else last
 
 
 def _reason_for_shear(a: Adequacy) -> str:
-    of = "the mass above the base" if a.base_known else "the total mass including the base"
-    asked = f"(required: {_percent_text(1.0 - a.tolerance.base_shear)})"
+    whole = translated("the mass above the base" if a.base_known else "the total mass including the base")
+    needed = _percent_text(1.0 - a.tolerance.base_shear)
     carried = [_percent_text(1.0 - left) for left in a.base_shear_left]
-    if a.enough_for_shear is None:
-        remedy = "give more modes" if a.base_known else "give more modes, or the mass of the base"
-        only = f"only {carried[-1]} of {of} participates with {_mode_count_text(a.n_modes)} {asked}"
-        return f"For the base shear {remedy}: {only}. {_SHEAR_NOTE}"
-    if a.enough is not None and a.enough_for_shear <= a.enough:
-        return f"This is also enough for the base shear: {carried[a.enough - 1]} of {of} participates {asked}."
-    fewer = f", only {carried[a.enough - 1]} with {_mode_count_text(a.enough)}" if a.enough is not None else ""
-    return (
-        f"For the base shear use {a.model_for_shear}: {carried[a.enough_for_shear - 1]} of {of} participates with "
-        f"{_mode_count_text(a.enough_for_shear)}{fewer} {asked}. {_SHEAR_NOTE}"
+    note = translated(
+        "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it "
+        "does in the base shear of models that end in -R."
     )
+    if a.enough_for_shear is None:
+        told = translated(
+            "For the base shear give more modes: only {share} of {whole} participates with {modes} (required: "
+            "{needed})."
+            if a.base_known
+            else "For the base shear give more modes, or the mass of the base: only {share} of {whole} participates "
+            "with {modes} (required: {needed}).",
+            share=carried[-1],
+            whole=whole,
+            modes=_mode_count_text(a.n_modes),
+            needed=needed,
+        )
+        return f"{told} {note}"
+    if a.enough is not None and a.enough_for_shear <= a.enough:
+        return translated(
+            "This is also enough for the base shear: {share} of {whole} participates (required: {needed}).",
+            share=carried[a.enough - 1],
+            whole=whole,
+            needed=needed,
+        )
+    told = translated(
+        "For the base shear use {model}: {share} of {whole} participates with {modes} (required: {needed})."
+        if a.enough is None
+        else "For the base shear use {model}: {share} of {whole} participates with {modes}, only {less} with {fewer} "
+        "(required: {needed}).",
+        model=a.model_for_shear,
+        share=carried[a.enough_for_shear - 1],
+        whole=whole,
+        modes=_mode_count_text(a.enough_for_shear),
+        less=carried[(a.enough or 1) - 1],
+        fewer=_mode_count_text(a.enough or 1),
+        needed=needed,
+    )
+    return f"{told} {note}"
 
 
 def _mode_count_text(count: int) -> str:
-    return "one mode" if count == 1 else f"{count} modes"
+    return translated("one mode" if count == 1 else "{n} modes", n=count)
 
 
 def _percent_text(value: float) -> str:
-    return f"{100.0 * value:.3g} %" if value >= 1e-3 else "less than 0.1 %"
+    return f"{100.0 * value:.3g} %" if value >= 1e-3 else translated("less than 0.1 %")

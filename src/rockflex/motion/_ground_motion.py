@@ -15,6 +15,7 @@ from rockflex._checks import checked_finite, checked_finite_vector, checked_inst
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
+from rockflex._language import translated
 from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.motion import _signal, _spectra
@@ -524,9 +525,13 @@ def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Arr
     longest = max(along.acceleration.size, upwards.acceleration.size)
     if abs(along.duration - upwards.duration) > MAX_LENGTH_DIFFERENCE:
         warnings.warn(
-            f"The motion {shown(along.name)} lasts {along.duration:g} s, and its vertical component "
-            f"{upwards.duration:g} s; zeros were appended to the shorter one. Make sure that both start at the same "
-            "instant.",
+            translated(
+                "The motion {name} lasts {duration} s, and its vertical component {vertical} s; zeros were appended to "
+                "the shorter one. Make sure that both start at the same instant.",
+                name=shown(along.name),
+                duration=f"{along.duration:g}",
+                vertical=f"{upwards.duration:g}",
+            ),
             RecordWarning,
             stacklevel=3,
         )

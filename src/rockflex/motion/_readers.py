@@ -10,6 +10,7 @@ import numpy as np
 from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
+from rockflex._language import translated
 from rockflex._registry import Catalogue
 from rockflex._shown import shown
 from rockflex.motion import _obspy, _text
@@ -314,15 +315,21 @@ def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
     if difference <= PEAK_TOLERANCE:
         return difference, ""
     without = float(np.max(np.abs(motion.acceleration - motion.acceleration.mean())))
-    text = f"the header states a PGA of {stated:.6g} m/s², but the samples reach {motion.pga:.6g} m/s²"
-    if done:
-        return difference, f"{text} ({done})"
-    if _relative_difference(without, stated) <= PEAK_TOLERANCE:
-        return min(difference, MAX_PEAK_MISMATCH), (
-            f"{text}, and {without:.6g} m/s² when their mean is subtracted, which was not done: "
-            "motion.baseline_corrected(0) is close to it"
-        )
-    return difference, f"{text}, and {without:.6g} m/s² when their mean is subtracted"
+    explained = not done and _relative_difference(without, stated) <= PEAK_TOLERANCE
+    text = translated(
+        "the header states a PGA of {stated} m/s², but the samples reach {peak} m/s² ({done})"
+        if done
+        else "the header states a PGA of {stated} m/s², but the samples reach {peak} m/s², and {without} m/s² when "
+        "their mean is subtracted, which was not done: motion.baseline_corrected(0) is close to it"
+        if explained
+        else "the header states a PGA of {stated} m/s², but the samples reach {peak} m/s², and {without} m/s² when "
+        "their mean is subtracted",
+        stated=f"{stated:.6g}",
+        peak=f"{motion.pga:.6g}",
+        without=f"{without:.6g}",
+        done=done,
+    )
+    return min(difference, MAX_PEAK_MISMATCH) if explained else difference, text
 
 
 def _relative_difference(one: float, other: float) -> float:

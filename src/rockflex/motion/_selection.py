@@ -19,7 +19,8 @@ from rockflex._checks import (
     real_or_nan,
 )
 from rockflex._errors import InputError, RecordWarning
-from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex._language import translated
+from rockflex._shown import first_texts_shown, shown
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
 from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor
@@ -213,9 +214,14 @@ def _candidate_recordings(motions: Sequence[GroundMotion], measure: Combination)
             field="measure",
         )
     if single:
-        count = number_with_noun(len(single), "motion that is", "motions that are")
         warnings.warn(
-            f"Left out: {count} not one of two components with the same time step, {first_texts_shown(single, 5)}.",
+            translated(
+                "Left out: {n} motion that is not one of two components with the same time step, {names}."
+                if len(single) == 1
+                else "Left out: {n} motions that are not one of two components with the same time step, {names}.",
+                n=len(single),
+                names=first_texts_shown(single, 5),
+            ),
             RecordWarning,
             stacklevel=4,
         )

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._shown import number_with_noun
+from rockflex._language import translated
 from rockflex._values import Value
 from rockflex.motion import _read_suite
 from rockflex.motion._ground_motion import GroundMotion, record_info_of
@@ -200,7 +200,8 @@ def _survey_of_components(
     if isinstance(paths, str | Path):
         others = (file for file in Path(paths).iterdir() if file.is_file() and not _read_suite.is_record_file(file))
         entries += [
-            SurveyEntry(file=file.name, taken=False, reason="no record, by suffix and beginning") for file in others
+            SurveyEntry(file=file.name, taken=False, reason=translated("no record, by suffix and beginning"))
+            for file in others
         ]
     motions = [motion for each in found for path, motion in each.motions.items() if path not in result.copies]
     return RecordSurvey(
@@ -216,9 +217,15 @@ def _survey_entries(
 ) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
-        count = number_with_noun(len(missing), "file that is", "files that are")
-        told = f"; it lists {count} not there: {file_names_text(missing)}" if missing else ""
-        reason = f"a table about the records{told}"
+        reason = translated(
+            "a table about the records"
+            if not missing
+            else "a table about the records; it lists {n} file that is not there: {files}"
+            if len(missing) == 1
+            else "a table about the records; it lists {n} files that are not there: {files}",
+            n=len(missing),
+            files=file_names_text(missing),
+        )
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
     if each.fault is not None:
         reason = str(each.fault).replace(str(each.file), each.file.name)
@@ -242,9 +249,9 @@ def _survey_entries(
 def _survey_reason(path: Path, result: _read_suite.ChosenComponents) -> str:
     """Return why a component is not taken, or has no vertical one."""
     if path in result.copies:
-        return f"a copy of {result.copies[path].name}"
+        return translated("a copy of {name}", name=result.copies[path].name)
     if path in result.boreholes:
-        return "borehole component beneath a record at the surface"
+        return translated("borehole component beneath a record at the surface")
     if path in result.vertical:
-        return "vertical component"
-    return (result.unpaired[path] or "without a vertical component") if path in result.unpaired else ""
+        return translated("vertical component")
+    return (result.unpaired[path] or translated("without a vertical component")) if path in result.unpaired else ""

@@ -12,7 +12,9 @@ from matplotlib.lines import Line2D
 from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_instance
 from rockflex._errors import InputError
-from rockflex._number_format import short_number, unit_with_prefix
+from rockflex._language import translated
+from rockflex._number_format import short_number
+from rockflex._units import Unit
 from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
@@ -29,9 +31,9 @@ _NEEDED = (
 _STYLES = (LineStyle(BLACK, "-"), LineStyle(RED, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
 _DECADES = 4.0  # of rates below the largest that are shown, or below the target
 _AXES = {
-    "half_width": ("half_width", "half width $B$", "m"),
-    "tendon_factor": ("prestress", "prestress $ΣF_0$", "N"),
-    "dissipator_factor": ("dissipator_force", "force of the dissipators $ΣF_y$", "N"),
+    "half_width": ("half_width", "half width $B$", "length"),
+    "tendon_factor": ("prestress", "prestress $ΣF_0$", "force"),
+    "dissipator_factor": ("dissipator_force", "force of the dissipators $ΣF_y$", "force"),
 }
 _SEARCH_STYLES = (LineStyle(BLUE, "-"), LineStyle(ORANGE, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
 _FINE = 81  # points along each side of a plane
@@ -88,22 +90,26 @@ def plot_design(
     found = None if target is None else smallest_width(table, target)
     logarithms = value == "rate" if logarithmic is None else logarithmic
     with figures.applied_figure_style(size=size):
-        figure, panels = tables.structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
+        unit = figures.axis_unit("length")
+        across = unit.heading(translated("half width $B$"))
+        figure, panels = tables.structure_panels(models, 2, 2.9, across, _design_value_name(table, value))
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
                 rows = _design_rows(table, model, tendon).sort_values("half_width")
-                _draw_design_curve(axes, rows, value, style, marker, tendon, logarithmic=logarithms)
+                _draw_design_curve(axes, rows, value, style, marker, unit.size, tendon, logarithmic=logarithms)
             if found is not None and target is not None:
                 axes.axhline(target, color=BLUE, linewidth=0.8, dashes=(5, 3), label="_target")
-                _draw_smallest_widths(axes, _design_rows(found, model), styles, target)
-        _set_design_limits(panels[0], table, table[value].to_numpy(float), target, logarithmic=logarithms)
+                _draw_smallest_widths(axes, _design_rows(found, model), styles, target, unit)
+        widths = table["half_width"].to_numpy(float) / unit.size
+        _set_design_limits(panels[0], table, widths, table[value].to_numpy(float), target, logarithmic=logarithms)
         for axes in panels:
-            _draw_slenderness_axis(axes, table)
-        handles = tables.model_legend_handles({figures.literal_text(tendon): style for tendon, style in styles.items()})
+            _draw_slenderness_axis(axes, table, unit.size)
+        handles = tables.model_legend_handles(
+            {figures.literal_text(translated(tendon)): style for tendon, style in styles.items()}
+        )
         if target is not None:
-            handles.append(
-                Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")
-            )
+            label = translated("target {value}", value=short_number(target))
+            handles.append(Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=label))
         figures.add_legend_above(figure, handles)
     return figure
 
@@ -117,23 +123,32 @@ def _design_value_name(table: "pd.DataFrame", value: str) -> str:
     """Name of the values on the axis: one limit in rad, one multiple of 0.7 atan(B/h*_1), or overturning."""
     limits, nominal = table["limit"].to_numpy(float), 0.7 * np.arctan(1.0 / table["aspect_ratio"].to_numpy(float))
     known = np.isfinite(limits)
-    event = "limit"
+    event = translated("limit")
     if known.any():
         first, multiple = limits[known][0], (limits / nominal)[known]
         if np.allclose(limits[known], first, rtol=1e-9):
-            event = (OVERTURNING if first == OVERTURNED else rotation_limit_state(first)).symbol
+            event = translated((OVERTURNING if first == OVERTURNED else rotation_limit_state(first)).symbol)
         elif np.allclose(multiple, multiple[0], rtol=1e-9):
             event = nominal_rotation_symbol(multiple[0])
         else:
             raise InputError("The designs have limits of several kinds. Plot the table of one limit.")
     event = f"${event}$" if ">" in event else event
-    return f"annual rate of {event}" if value == "rate" else f"P({event})"
+    return translated("annual rate of {event}", event=event) if value == "rate" else f"P({event})"
 
 
 def _draw_design_curve(
-    axes: Axes, rows: "pd.DataFrame", value: str, style: LineStyle, marker: str, name: str, *, logarithmic: bool
+    axes: Axes,
+    rows: "pd.DataFrame",
+    value: str,
+    style: LineStyle,
+    marker: str,
+    size: float,
+    name: str,
+    *,
+    logarithmic: bool,
 ) -> None:
     b, y, low, high = (rows[column].to_numpy(float) for column in ("half_width", value, "low", "high"))
+    b = b / size
     shown = np.isfinite(y) & ((y > 0.0) | (not logarithmic))
     axes.plot(
         b[shown], y[shown], **style.look, marker=marker, markersize=3.5, markerfacecolor="none", markeredgewidth=0.7,
@@ -148,21 +163,23 @@ def _draw_design_curve(
 
 
 def _draw_smallest_widths(
-    axes: Axes, found: "pd.DataFrame", styles: dict[str, tuple[LineStyle, str]], target: float
+    axes: Axes, found: "pd.DataFrame", styles: dict[str, tuple[LineStyle, str]], target: float, unit: Unit
 ) -> None:
     """Draw a ring where each curve meets the target, and list the half widths."""
     lines: list[tuple[str, str]] = []
     for row in found.to_dict("records"):
         style, _ = styles[str(row["tendon"])]
-        width = float(row["half_width"])
+        width = float(row["half_width"]) / unit.size
         met = row["outcome"] in ("met", "met more than once")
         if met:
             axes.plot(
                 [width], [target], "o", color=style.color, markersize=7.0, markerfacecolor="none", markeredgewidth=1.2,
                 label="_answer", zorder=3.0,
             )  # fmt: skip
-        text = f"B {'=' if met else '≤'} {width:.3g} m" if math.isfinite(width) else "not met"
-        lines.append((text + " (met more than once)" * (row["outcome"] == "met more than once"), style.color))
+        text = f"B {'=' if met else '≤'} {width:.3g} {unit.name}" if math.isfinite(width) else translated("not met")
+        if row["outcome"] == "met more than once":
+            text = translated("{width} (met more than once)", width=text)
+        lines.append((text, style.color))
     for place, (text, color) in enumerate(lines):
         axes.annotate(
             text, (0.97, 0.95), xytext=(0.0, -11.0 * place), xycoords="axes fraction", textcoords="offset points",
@@ -171,8 +188,9 @@ def _draw_smallest_widths(
         )  # fmt: skip
 
 
-def _set_design_limits(axes: Axes, table: "pd.DataFrame", y: Array, target: float | None, *, logarithmic: bool) -> None:
-    b = table["half_width"].to_numpy(float)
+def _set_design_limits(
+    axes: Axes, table: "pd.DataFrame", b: Array, y: Array, target: float | None, *, logarithmic: bool
+) -> None:
     margin = 0.04 * float(np.ptp(b)) or 0.1 * float(b[0])
     axes.set_xlim(max(float(b.min()) - margin, 0.5 * float(b.min())), float(b.max()) + margin)
     values = np.concatenate([y, table["high"].to_numpy(float)])
@@ -186,9 +204,9 @@ def _set_design_limits(axes: Axes, table: "pd.DataFrame", y: Array, target: floa
         axes.set_ylim(-0.03 * top, 1.05 * top)
 
 
-def _draw_slenderness_axis(axes: Axes, table: "pd.DataFrame") -> None:
-    """Draw the axis of h*_1/B at the top."""
-    height = float((table["half_width"] * table["aspect_ratio"]).iloc[0])
+def _draw_slenderness_axis(axes: Axes, table: "pd.DataFrame", size: float) -> None:
+    """Draw the axis of h*_1/B at the top; `size` is that of the unit of the half width, in m."""
+    height = float((table["half_width"] * table["aspect_ratio"]).iloc[0]) / size
     if not height > 0.0:
         return
 
@@ -212,12 +230,13 @@ class _DesignVariableAxis:
 
     def __init__(self, variable: str, designs: "pd.DataFrame") -> None:
         self.variable = variable
-        self.column, words, unit = _AXES[variable]
+        self.column, words, quantity = _AXES[variable]
         if not designs[self.column].to_numpy(float).any():  # factors on forces of zero
-            self.column, words, unit = variable, variable.replace("_", " "), ""
-        forces = unit == "N"
-        self.divisor, self.unit = unit_with_prefix(float(designs[self.column].max()), unit) if forces else (1.0, unit)
-        self.name = f"{words} [{self.unit}]" if unit else words
+            self.column, words, quantity = variable, variable.replace("_", " "), ""
+        unit = figures.axis_unit(quantity, float(designs[self.column].max())) if quantity else Unit(1.0, "")
+        self.divisor, self.unit = unit
+        self.words = translated(words)
+        self.name = unit.heading(self.words)
 
     def of(self, table: "pd.DataFrame") -> Array:
         return table[self.column].to_numpy(float) / self.divisor
@@ -276,7 +295,10 @@ def plot_design_search(found: BestDesign, *, size: Size | None = None) -> Figure
         if len(varied) > 1:
             _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
         handles = [Line2D([], [], **style.look, label=figures.literal_text(label)) for label, style in styles.items()]
-        for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
+        for name, face in (
+            (translated("run, meets all targets"), _design_text_color()),
+            (translated("run, does not"), "none"),
+        ):
             handles.append(
                 Line2D(
                     [], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_design_text_color(),
@@ -295,14 +317,17 @@ def _design_text_color() -> str:
 
 def _best_design_text(found: BestDesign) -> str:
     if found.best is None:
-        return "No design meets all targets"
+        return translated("No design meets all targets")
     best = found.designs.iloc[found.best]
-    words = [f"B = {short_number(best['half_width'])} m"]
+    length = figures.axis_unit("length")
+    words = [f"B = {short_number(best['half_width'] / length.size)} {length.name}"]
     for column, symbol in (("prestress", "$ΣF_0$"), ("dissipator_force", "$ΣF_y$")):
         if best[column] > 0.0:
-            divisor, unit = unit_with_prefix(float(best[column]), "N")
+            divisor, unit = figures.axis_unit("force", float(best[column]))
             words.append(f"{symbol} = {short_number(best[column] / divisor)} {unit}")
-    return f"Cheapest: {', '.join(words)}; {figures.literal_text(found.governs)} governs"
+    return translated(
+        "Cheapest: {values}; {limit} governs", values=", ".join(words), limit=figures.literal_text(found.governs)
+    )
 
 
 def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:
@@ -320,7 +345,7 @@ def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dic
         for ends in ((across, [y, y]), ([x, x], bands["cost"])):
             axes.plot(*ends, color=_design_text_color(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
         _mark_best_design(axes, x, y)
-    axes.set(xlabel=scale.name, ylabel="cost")
+    axes.set(xlabel=scale.name, ylabel=translated("cost"))
 
 
 def _draw_design_plane(
@@ -359,9 +384,7 @@ def _draw_design_plane(
     if found.best is not None:
         _mark_best_design(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
     fixed = [_DesignVariableAxis(name, designs) for name in others]
-    words = [
-        f"{s.name.rpartition(' [')[0] or s.name} = {short_number(float(s.of(designs)[place]))} {s.unit}" for s in fixed
-    ]
+    words = [f"{s.words} = {short_number(float(s.of(designs)[place]))} {s.unit}" for s in fixed]
     axes.set(xlabel=across.name, ylabel=up.name, title=", ".join(words))
 
 

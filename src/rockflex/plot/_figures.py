@@ -165,10 +165,11 @@ def figure_style(
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
     units
-        Units of responses over time, loops and sets of records: ``"kN"``, ``"MN"``, ``"SI"`` or ``"kip-in"``, as in
-        `write_report`. Default: SI units, of forces with the prefix that suits their size.
+        Units of responses over time, loops, sets of records, motions, target spectra, shapes of modes and designs:
+        ``"kN"``, ``"MN"``, ``"SI"`` or ``"kip-in"``, as in `write_report`. Default: SI units, of forces with the prefix
+        that suits their size. Fits and measures of intensity stay in SI units.
     language
-        Language of the same figures: ``"en"``, ``"de"``, ``"it"``, ``"fr"`` or ``"es"``. Default: English.
+        Language of all figures: ``"en"``, ``"de"``, ``"it"``, ``"fr"`` or ``"es"``. Default: English.
     decimal
         Decimal sign of numbers, ``"."`` or ``","``. Default: that of the language.
 

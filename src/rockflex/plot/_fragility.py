@@ -14,8 +14,10 @@ from rockflex import fragility
 from rockflex._cases import runs_by_case, runs_of_case
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
+from rockflex._language import translated
 from rockflex._number_format import short_number
-from rockflex._shown import number_with_noun, shown
+from rockflex._shown import shown
+from rockflex._units import Unit
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
@@ -33,10 +35,10 @@ _OF_INCREMENTAL = (
 )
 _MAX_ROWS = 6  # rows of panels
 _QUANTITIES = {
-    "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
-    "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
-    "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
-    "max_ductility": r"$μ_{\mathrm{max}}$ of the stories",
+    "max_rotation": (r"$θ_{\mathrm{max}}$", "{symbol}", "rad"),
+    "max_top_displacement": (r"$u_{\mathrm{top,max}}$", "{symbol}, relative to the base", "m"),
+    "max_total_top_displacement": (r"$u_{\mathrm{top,max}}$", "total {symbol}", "m"),
+    "max_ductility": (r"$μ_{\mathrm{max}}$", "{symbol} of the stories", ""),
 }
 _TINY = 6.75
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
@@ -107,8 +109,8 @@ def plot_fragility(
         digits, exponent = f"{fits[0].outcomes.threshold:.3e}".split("e")
         times = "" if float(digits) == 1.0 else rf"{float(digits):g}\times"
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
-        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
-        y = "probability" if overturning else f"$P({event})$"
+        event = rf"\mathrm{{{translated('uplift')}}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
+        y = translated("probability") if overturning else f"$P({event})$"
         figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
@@ -127,15 +129,17 @@ def plot_fragility(
                 axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
             if failed:
-                axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
+                text = translated("{n} failed", n=failed)
+                axes.text(0.97, 0.05, text, transform=axes.transAxes, ha="right", fontsize=SMALL)
         panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
         handles: list[Line2D | Patch] = [*tables.model_legend_handles(styles, symbols=False)]
         if groups:
-            handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
+            observed = translated("observed")
+            handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label=observed))
         if overturning:
-            handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
+            handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label=translated("overturning")))
         if lowest is not None:
-            handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
+            handles.append(Patch(color=SHADE, linewidth=0.0, label=translated("no runs")))
         figures.add_legend_above(figure, handles)
     return figure
 
@@ -265,7 +269,7 @@ def plot_stripes(
     names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with figures.applied_figure_style(size=size):
-        event = fragility.limit_state_of(limit).symbol
+        event = translated(fragility.limit_state_of(limit).symbol)
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
@@ -280,11 +284,11 @@ def plot_stripes(
                 )  # fmt: skip
                 fit = _fit_of_stripes(runs_of_case(runs, name, model), limit)
                 if fit is None:
-                    notes.append(("no curve fits", style.color))
+                    notes.append((translated("no curve fits"), style.color))
                 else:
                     known = None if fit.covariance is None else confidence
                     _draw_fragility_curve(axes, fit, end, known, style, label=model)
-                    notes.append((f"median {fit.median:.3g}, β = {fit.beta:.2f}", style.color))
+                    notes.append((_lognormal_text(f"{fit.median:.3g}", fit.beta), style.color))
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
@@ -294,6 +298,10 @@ def plot_stripes(
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
         figures.add_legend_above(figure, tables.model_legend_handles(styles))
     return figure
+
+
+def _lognormal_text(median: str, beta: float) -> str:
+    return translated("median {median}, β = {beta}", median=median, beta=f"{beta:.2f}")
 
 
 def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> fragility.LognormalFragility | None:
@@ -361,29 +369,29 @@ def plot_ida(
             f"{len(cases)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
     with figures.applied_figure_style(size=size):
-        across = 1 if figures.is_narrow() else 2
+        across, unit = 1 if figures.is_narrow() else 2, figures.axis_unit("rotation")
         figure = figures.new_figure(6.3, 0.9 + 2.1 * len(cases) * 2 // across)
         grid = figure.subplots(2 * len(cases) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model, ladders) in enumerate(cases):
             left, right = grid[row]
-            failed = _draw_ida_curves(left, ladders, measure)
+            failed = _draw_ida_curves(left, ladders, measure, unit.size)
             _draw_ida_capacities(right, runs_of_case(capacities, structure, model), confidence, failed)
-            left.set(title=figures.literal_text(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
-            right.set_ylabel("P(overturning)")
+            left.set(title=figures.literal_text(f"{structure}, {model}"), ylabel=unit.heading(r"$θ_{\mathrm{max}}$"))
+            right.set_ylabel(f"P({translated('overturning')})")
             figures.label_panel(left, chr(ord("A") + 2 * row))
             figures.label_panel(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
             axes.set_xlabel(tables.measure_axis_name(measure))
         handles = [
-            Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
-            Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),
+            Line2D([], [], color=GRAY, linewidth=0.7, label=translated("record")),
+            Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label=translated("first overturning")),
             Line2D(
                 [], [], color=BLUE, marker="o", linestyle="", markersize=3.0, markerfacecolor="white",
-                label="stands again",
+                label=translated("stands again"),
             ),
-            Line2D([], [], color=BLACK, linewidth=0.9, label="observed"),
-            Line2D([], [], color=RED, linestyle="--", label="lognormal"),
+            Line2D([], [], color=BLACK, linewidth=0.9, label=translated("observed")),
+            Line2D([], [], color=RED, linestyle="--", label=translated("lognormal")),
         ]  # fmt: skip
         figures.add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
     return figure
@@ -396,7 +404,7 @@ def _ida_axis_limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: s
     return 1.05 * max(ends, default=1.0)
 
 
-def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
+def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str, size: float) -> int:
     """Draw one curve per record; return how many runs failed."""
     top = 0.0
     for _, ladder in runs.groupby("motion", observed=True, sort=False):
@@ -404,7 +412,7 @@ def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
         if not len(solved):
             continue
         fell = solved["overturned"].to_numpy(dtype=bool)
-        im, rotation = solved[measure].to_numpy(dtype=float), solved["max_rotation"].to_numpy(dtype=float)
+        im, rotation = solved[measure].to_numpy(dtype=float), solved["max_rotation"].to_numpy(dtype=float) / size
         axes.plot(
             np.append(0.0, im), np.append(0.0, np.where(fell, np.nan, rotation)), color=GRAY, linewidth=0.5,
             alpha=0.8, label="_record",
@@ -422,7 +430,7 @@ def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
             im[again], rotation[again], "o", color=BLUE, markersize=2.6, markerfacecolor="white",
             markeredgewidth=0.6, label="_resurrected", zorder=2.5,
         )  # fmt: skip
-    axes.set_ylim(0.0, 1.12 * top or 0.1)
+    axes.set_ylim(0.0, 1.12 * top or 0.1 / size)
     return int(runs["overturned"].isna().sum())
 
 
@@ -431,9 +439,9 @@ def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | N
     axes.set_ylim(-0.03, 1.03)
     rows = rows[rows["capacity"].notna()]
     reached, censored = rows["capacity"].to_numpy(dtype=float), rows["censored"].to_numpy(dtype=bool)
-    lines = [number_with_noun(len(rows), "record")]
+    lines = [translated("{n} record" if len(rows) == 1 else "{n} records", n=len(rows))]
     if censored.any():
-        lines[0] += f", {int(censored.sum())} never reached the limit"
+        lines[0] += translated(", {n} never reached the limit", n=int(censored.sum()))
     if not censored.all():
         from scipy.stats import CensoredData, ecdf
 
@@ -446,10 +454,10 @@ def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | N
         end = float(reached.max()) * 1.3
         known = None if fit.covariance is None else confidence
         _draw_fragility_curve(axes, fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
-        lines.append(f"median {short_number(fit.median)}, β = {fit.beta:.2f}")
-    lines.append(f"{int((rows['resurrections'] > 0).sum())} with resurrections")
+        lines.append(_lognormal_text(short_number(fit.median), fit.beta))
+    lines.append(translated("{n} with resurrections", n=int((rows["resurrections"] > 0).sum())))
     if failed:
-        lines.append(f"{number_with_noun(failed, 'run')} failed")
+        lines.append(translated("{n} run failed" if failed == 1 else "{n} runs failed", n=failed))
     axes.text(
         0.97, 0.05, "\n".join(lines), transform=axes.transAxes, ha="right", fontsize=SMALL, linespacing=1.3,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1.0},
@@ -534,9 +542,9 @@ def plot_clouds(
     names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with figures.applied_figure_style(size=size):
-        figure, panels = tables.structure_panels(
-            names, 2, 2.45, tables.measure_axis_name(measure), _QUANTITIES[quantity]
-        )
+        symbol, words, unit = _QUANTITIES[quantity]
+        y = Unit(1.0, unit).heading(translated(words, symbol=symbol))  # in SI units, as c1 in the panels
+        figure, panels = tables.structure_panels(names, 2, 2.45, tables.measure_axis_name(measure), y)
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
             tables.label_log_axis_plainly(axes.xaxis)
@@ -551,7 +559,8 @@ def plot_clouds(
             _write_cloud_numbers(axes, rows)
         handles = tables.model_legend_handles(styles)
         if len(fallen):
-            handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
+            fallen = translated("overturned")
+            handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label=fallen))
         figures.add_legend_above(figure, handles)
     return figure
 
@@ -620,7 +629,8 @@ def _draw_cloud(
 def _cloud_numbers_text(cloud: _PlottedCloud) -> str:
     line = cloud.line
     three = "     –     –     –" if line is None else f"{line.c1:6.2f}{line.c2:6.2f}{line.dispersion:6.2f}"
-    remarks = [f"{cloud.n_failed} failed"] * bool(cloud.n_failed) + ["no fit"] * (not cloud.fitted)
+    remarks = [translated("{n} failed", n=cloud.n_failed)] * bool(cloud.n_failed)
+    remarks += [translated("no fit")] * (not cloud.fitted)
     remark = f" ({', '.join(remarks)})" if remarks else ""
     return f"{cloud.model[:9]:>9}{three}{len(cloud.rocked):5d}{len(cloud.fallen):4d}{remark}".replace("-0.00", " 0.00")
 

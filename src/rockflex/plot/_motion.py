@@ -12,8 +12,9 @@ from matplotlib.patches import Patch
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import short_number
-from rockflex._shown import number_with_noun
+from rockflex._units import Unit
 from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, LINE_STYLES, ORANGE, RED, SHADE, LineStyle, Size
@@ -81,15 +82,16 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     first = motion.significant_duration(0.0, 0.05)
     said = {
         name: f"{MEASURES[name].sign} = {short_number(MEASURES[name].of(MeasureInput(motion)))} {MEASURES[name].unit}"
-        for name in ("pga", "pva", "pgv", "pgd", "arias", "d5_95")
+        for name in ("arias", "d5_95")
     }
+    acceleration, velocity, displacement = map(figures.axis_unit, ("acceleration", "velocity", "displacement"))
     histories = [
-        ("a", "m/s²", motion.acceleration, f"{said['pga']} ({short_number(motion.pga / GRAVITY)} g)"),
-        ("v", "m/s", motion.velocity, said["pgv"]),
-        ("d", "m", motion.displacement, said["pgd"]),
+        ("a", acceleration, motion.acceleration, _peak_text("PGA", motion.pga, acceleration)),
+        ("v", velocity, motion.velocity, _peak_text("PGV", motion.pgv, velocity)),
+        ("d", displacement, motion.displacement, _peak_text("PGD", motion.pgd, displacement)),
     ]
     if motion.vertical is not None:
-        histories.insert(1, ("a_v", "m/s²", motion.vertical, f"{said['pva']} ({short_number(motion.pva / GRAVITY)} g)"))
+        histories.insert(1, ("a_v", acceleration, motion.vertical, _peak_text("PVA", motion.pva, acceleration)))
     with figures.applied_figure_style(size=size):
         figure = figures.new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * figures.is_narrow())
         if figures.is_narrow():
@@ -100,29 +102,43 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         for symbol, unit, values, peak in histories:
             axes = panels[symbol]
             axes.axvspan(first, first + motion.d5_95, color=SHADE, zorder=0.5)
-            axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
-            limit = 1.1 * float(np.max(np.abs(values))) or 1.0
-            axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=f"${symbol}$ [{unit}]")
+            axes.plot(motion.time, values / unit.size, color=BLACK, linewidth=0.7)
+            limit = 1.1 * float(np.max(np.abs(values))) / unit.size or 1.0
+            axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=unit.heading(f"${symbol}$"))
             axes.set_title(peak, loc="right", fontsize=figures.scaled_font_size(8.0))
         for symbol, *_ in histories[:-1]:
             panels[symbol].sharex(panels["d"])
             panels[symbol].tick_params(labelbottom=False)
-        panels["d"].set_xlabel("time [s]")
+        panels["d"].set_xlabel(translated("time [s]"))
         axes = panels["spectrum"]
-        axes.plot(spectrum.period, spectrum.sa, color=BLUE, linewidth=1.2, label="horizontal")
-        largest = float(spectrum.sa.max())
+        axes.plot(
+            spectrum.period, spectrum.sa / acceleration.size, color=BLUE, linewidth=1.2, label=translated("horizontal")
+        )
+        largest = float(spectrum.sa.max()) / acceleration.size
         if motion.vertical is not None:
             upwards = motion.vertical_motion.spectrum(_PERIODS, _DAMPING)
-            axes.plot(upwards.period, upwards.sa, color=ORANGE, linewidth=1.2, linestyle="--", label="vertical")
+            over = upwards.sa / acceleration.size
+            axes.plot(upwards.period, over, color=ORANGE, linewidth=1.2, linestyle="--", label=translated("vertical"))
             axes.legend(loc="upper right", fontsize=figures.scaled_font_size(8.0))
-            largest = max(largest, float(upwards.sa.max()))
+            largest = max(largest, float(over.max()))
         axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * largest or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
-        axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
-        words = f"{said['arias']}, {said['d5_95']} (shaded)\nspectrum for ζ = {100.0 * _DAMPING:g} %"
+        axes.set(xlabel="$T$ [s]", ylabel=acceleration.heading("$S_a$"))
+        words = translated(
+            "{arias}, {duration} (shaded)\nspectrum for ζ = {damping} %",
+            arias=said["arias"],
+            duration=said["d5_95"],
+            damping=f"{100.0 * _DAMPING:g}",
+        )
         axes.set_title(words, fontsize=figures.scaled_font_size(8.0))
-        figure.suptitle(figures.literal_text(motion.name) or "ground motion", fontsize="medium")
+        figure.suptitle(figures.literal_text(motion.name) or translated("ground motion"), fontsize="medium")
     return figure
+
+
+def _peak_text(name: str, value: float, unit: Unit) -> str:
+    """Return a peak with its unit, of an acceleration also in g."""
+    text = f"{name} = {short_number(value / unit.size)} {unit.name}"
+    return f"{text} ({short_number(value / GRAVITY)} g)" if unit.name == "m/s²" else text
 
 
 def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
@@ -174,23 +190,28 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
             axes.axvspan(low, high, color=SHADE, zorder=0.5)
-        _draw_selected_spectra(upper, selection, periods, rows)
-        upper.plot(
-            known, target.at(known), color=RED, linewidth=1.6, label=figures.literal_text(target.name) or "target"
-        )
+        unit = figures.axis_unit("acceleration")
+        _draw_selected_spectra(upper, selection, periods, rows / unit.size)
+        name = figures.literal_text(target.name) or translated("target")
+        upper.plot(known, target.at(known) / unit.size, color=RED, linewidth=1.6, label=name)
         within = np.isin(periods, known)
         lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
         lower.axhline(1.0, color=RED, linewidth=0.9)
         lower.axhline(_CODE_MINIMUM, color=BLACK, linewidth=0.8, linestyle="--")
         inside = selection.mean / target.at(selection.periods)
         bottom, top = min(0.85, float(inside.min())), max(1.15, float(inside.max()))
-        lower.set(ylim=(bottom - 0.1, top + 0.1), ylabel="mean/target", xlabel="$T$ [s]")
-        upper.set(xscale="log", yscale="log", ylabel=f"{_NAMES[selection.measure]} [m/s²]")
+        lower.set(ylim=(bottom - 0.1, top + 0.1), ylabel=translated("mean/target"), xlabel="$T$ [s]")
+        upper.set(xscale="log", yscale="log", ylabel=unit.heading(translated(_NAMES[selection.measure])))
         upper.set_xlim(float(periods[0]), float(periods[-1]))
         for axis in (upper.xaxis, upper.yaxis):
             label_log_axis_plainly(axis)
         handles, labels = upper.get_legend_handles_labels()
-        title = f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s"
+        title = translated(
+            "ζ = {damping} %, {low} to {high} s",
+            damping=f"{100.0 * target.damping_ratio:g}",
+            low=f"{low:.3g}",
+            high=f"{high:.3g}",
+        )
         figures.add_legend_above(figure, handles, labels, title=title, max_columns=2)
     return figure
 
@@ -199,13 +220,18 @@ def _draw_selected_spectra(axes: Axes, selection: Selection, periods: Array, row
     count = len(rows)
     if count > 1:
         for k, row in enumerate(rows):
-            label = number_with_noun(count, "record") if k == 0 else f"_{k}"
+            label = translated("{n} records", n=count) if k == 0 else f"_{k}"
             axes.plot(periods, row, color=GRAY, linewidth=0.6, alpha=0.7, label=label)
         median, spread = np.exp(np.log(rows).mean(axis=0)), np.log(rows).std(axis=0, ddof=1)
         band = median * np.exp(-spread), median * np.exp(spread)
-        axes.fill_between(periods, *band, color=BLUE, alpha=0.15, linewidth=0.0, label="16 to 84 %")
-    what = "mean" if count > 1 else "record"
-    label = f"{what}: misfit {selection.misfit:.2g}, at least {selection.least_ratio:.2f} of the target"
+        axes.fill_between(periods, *band, color=BLUE, alpha=0.15, linewidth=0.0, label=translated("16 to 84 %"))
+    label = translated(
+        "mean: misfit {misfit}, at least {ratio} of the target"
+        if count > 1
+        else "record: misfit {misfit}, at least {ratio} of the target",
+        misfit=f"{selection.misfit:.2g}",
+        ratio=f"{selection.least_ratio:.2f}",
+    )
     axes.plot(periods, rows.mean(axis=0), color=BLUE, linewidth=1.6, label=label)
 
 
@@ -268,7 +294,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
         axes.set(
             ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=figures.literal_text(title)
         )
-        cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
+        cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label=translated("overturned"))
         handles, _ = axes.get_legend_handles_labels()
         figures.add_legend_beside(figure, [*handles, cross])
     return figure
@@ -333,12 +359,13 @@ def plot_overturning_spectrum(
                 ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
                 alpha=0.5,
             )  # fmt: skip
-            axes.plot(ratio, low, **style.look, label=figures.literal_text(name) or "lowest")
-        axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
+            axes.plot(ratio, low, **style.look, label=figures.literal_text(name) or translated("lowest"))
+        axes.axhline(1.0, color=GRAY, linewidth=0.8, label=translated("uplift"))
         axes.set_xlim(left=0.0)
         axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=figures.literal_text(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
-            handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
+            either = translated("either")
+            handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label=either))
         figures.add_legend_beside(figure, handles)
     return figure

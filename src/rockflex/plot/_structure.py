@@ -16,6 +16,7 @@ from rockflex import modal
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import short_number
 from rockflex._shown import shown
 from rockflex.plot import _figures as figures
@@ -99,14 +100,14 @@ def plot_mode_shapes(
             else:
                 axes.set_axis_off()
         for row in grid:
-            row[0].set_ylabel("height [m]")
+            row[0].set_ylabel(figures.axis_unit("length").heading(translated("height")))
         figure.supxlabel(r"$Γ_n\,φ_n$", fontsize="medium")
     return figure
 
 
 def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
-    heights = np.concatenate(([0.0], modes.heights))
+    heights = np.concatenate(([0.0], modes.heights)) / figures.axis_unit("length").size
     axes.axvline(0.0, color=GRAY, linewidth=0.8)
     few = heights.size <= 40
     axes.plot(ordinates, heights, color=BLUE, linewidth=1.4, marker="o" if few else "", markersize=3.0)
@@ -122,10 +123,12 @@ def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: fl
 def _mode_description(modes: modal.ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
-        share = rf"$m^*_{{{n + 1}}}$ = {short_number(mass)} kg"
+        kilograms, name = figures.axis_unit("mass")
+        share = rf"$m^*_{{{n + 1}}}$ = {short_number(mass / kilograms)} {name}"
     else:
         share = rf"$m^*_{{{n + 1}}}/Σm$ = {short_number(100.0 * mass / total)} %"
-    arm = f"{short_number(height)} m" if math.isfinite(height) else "none"
+    metres, name = figures.axis_unit("length")
+    arm = f"{short_number(height / metres)} {name}" if math.isfinite(height) else translated("none")
     return f"$T_{{{n + 1}}}$ = {short_number(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
 
 
@@ -194,7 +197,16 @@ def plot_frequency_equation(
             figures.label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [Line2D([], [], **style.look, linewidth=style.width, label=label) for label, style in styles.items()]
-        handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
+        handles.append(
+            Line2D(
+                [],
+                [],
+                color=GRAY,
+                linestyle=":",
+                linewidth=0.9,
+                label=translated("{symbol}, fixed base", symbol="$ω_n/ω_1$"),
+            )
+        )
         figures.add_legend_above(figure, handles, handlelength=2.8)
     return figure
 
@@ -232,7 +244,7 @@ def _draw_frequency_equation(
         axes.axvline(float(pole), color=GRAY, linestyle=":", linewidth=0.9, zorder=1.5, label="_pole")
     axes.axhline(0.0, color=_INK, linewidth=0.8, zorder=1.6, label="_zero")
     ordinates: list[Array] = []
-    notes = [(r"zeros, $ω^*_n/ω_1$", _INK)]
+    notes = [(translated("zeros, {symbol}", symbol="$ω^*_n/ω_1$"), _INK)]
     for label, (p, modes) in models.items():
         style = styles[label]
         omega = _frequencies_between_poles(p.omega, end * first)
@@ -248,7 +260,7 @@ def _draw_frequency_equation(
         )  # fmt: skip
         notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
-    axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
+    axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=translated("frequency equation") + r" / $I_θ\,ω_1^2$")
     figures.write_notes_beside(axes, notes, 10.5)
 
 
@@ -368,7 +380,7 @@ def _frequency_ratio_handles(
         grays = {name: LineStyle("#606060", dash) for name, dash in dashes.items()}
         handles += [Line2D([], [], **gray.look, label=figures.literal_text(name)) for name, gray in grays.items()]
     if bounded:
-        handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
+        handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label=translated("pinned beam, no spring")))
     if mark is not None:
         handles.append(Line2D([], [], color=GRAY, linewidth=1.2, label=rf"$h^*_1/B$ = {mark:g}"))
     return handles
@@ -487,9 +499,9 @@ def _draw_tower_elevation(axes: Axes, tower: TaperedTower, z: float) -> None:
         axes, rf"$t_c$ = {tower.wall:g} m", (_outer_tower_radius(tower, 0.78 * height), 0.78 * height), (4, -3), _INK
     )
     _annotate_tower(axes, rf"$z$ = {z:g} m", (radius, z), (4, -3), BLUE)
-    axes.set(xlabel="width [m]", ylabel="height [m]")
+    axes.set(xlabel=translated("width [m]"), ylabel=translated("height [m]"))
     axes.grid(visible=False)
-    axes.set_title("elevation, widths enlarged")
+    axes.set_title(translated("elevation, widths enlarged"))
 
 
 def _draw_tower_section(axes: Axes, tower: TaperedTower, z: float) -> None:
@@ -512,7 +524,7 @@ def _draw_tower_section(axes: Axes, tower: TaperedTower, z: float) -> None:
     axes.grid(visible=False)
     axes.set_ylabel("[m]")
     axes.set_anchor("N")
-    axes.set_title(f"section at {z:g} m")
+    axes.set_title(translated("section at {height} m", height=f"{z:g}"))
 
 
 def _draw_tower_dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._number_format import short_number
 from rockflex._shown import shown
 from rockflex.motion import MEASURES
@@ -46,7 +47,10 @@ def check_table_columns(table: object, columns: Iterable[str], source: str, call
 
 def measure_axis_name(measure: str) -> str:
     """Name of an axis: an intensity measure with its unit, or the name of another column."""
-    return MEASURES[measure].axis if measure in MEASURES else figures.literal_text(measure)
+    known = MEASURES.get(measure)
+    if known is None:
+        return figures.literal_text(measure)
+    return known.with_unit(translated(known.label) if known.words == known.label else known.sign)
 
 
 def names_in_column(column: "pd.Series[Any] | Iterable[object]") -> list[str]:

@@ -148,7 +148,7 @@ class Project(HtmlTable, Value):
     def __init__(
         self,
         structures: Mapping[str, RockingStructure | RockingProperties],
-        motions: Motions | Selection,
+        motions: Motions,
         model: str | Mapping[str, str] = "MDOF-S",
         *,
         bouc_wen: BoucWen | Mapping[str, BoucWen] | None = None,
@@ -172,7 +172,7 @@ class Project(HtmlTable, Value):
         names = named or []
         if isinstance(motions, Selection):
             periods = periods or (float(motions.periods.min()), float(motions.periods.max()))
-        records = tuple(checked_motions(motions.suite if isinstance(motions, Selection) else motions))
+        records = tuple(checked_motions(motions))
         labels = _of_each("model", model, names, str)
         if len(labels) < len(names):
             raise InputError("model must be a label for all structures, or a mapping with one for each.", field="model")

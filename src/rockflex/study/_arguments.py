@@ -16,7 +16,7 @@ from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion, check_horizontal_component
+from rockflex.motion import GroundMotion, Selection, check_horizontal_component
 
 Output = Literal["history", "peaks"]
 
@@ -198,7 +198,7 @@ Structures: TypeAlias = (
     | Mapping[str, RockingProperties]
     | Mapping[str, RockingStructure | RockingProperties]
 )
-Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion]
+Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion] | Selection
 Models: TypeAlias = str | Model | Iterable[str | Model]
 
 
@@ -211,8 +211,8 @@ def checked_structures(given: Structures) -> tuple[list[RockingStructure | Rocki
 
 
 def checked_motions(given: Motions) -> list[GroundMotion]:
-    """Return the motions; a name in the mapping replaces the name of the motion."""
-    names, several = _named_entries("motions", given)
+    """Return the motions, of a selection the scaled ones; a name in the mapping replaces the name of the motion."""
+    names, several = _named_entries("motions", given.suite if isinstance(given, Selection) else given)
     motions = checked_sequence("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
     if names is None:
         return motions

@@ -51,7 +51,7 @@ def compare(
     alternatives
         2 to 6 structures by their names, or in a sequence: A, B, C.
     motions
-        One record, a sequence, or a mapping from names; a suite is a sequence of records.
+        One record, a sequence such as a suite, a mapping from names, or a `Selection`, whose scaled records are used.
     model
         A label or model for all. This and the options that follow may be mappings from the names of alternatives:
         ``model={"tied": "MDOF-S", "fixed": "fixed"}``. Options are the default for those that a mapping leaves out.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._cases import runs_by_case
+from rockflex._language import translated
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import BY_STORY, MAX_OF_STORIES, NAMES, Response, complete_model_label, leaves_range
 
@@ -132,16 +133,29 @@ class PivotLifts(NamedTuple):
         found: list[str] = []
         if self.lifting:
             found.append(
-                f"{self.structure}, {self.model}: in {self.lifting} of {self.rocking} runs that rock and stand the "
-                f"model pulls the base down ({REACTION} below zero), which no ground can: the pivot would lift. Read "
-                "what follows in such a run with care."
+                translated(
+                    "{structure}, {model}: in {k} of {n} runs that rock and stand the model pulls the base down "
+                    "({column} below zero), which no ground can: the pivot would lift. Read what follows in such a run "
+                    "with care.",
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.lifting,
+                    n=self.rocking,
+                    column=REACTION,
+                )
             )
         if self.beyond:
             found.append(
-                f"{self.structure}, {self.model}: in {self.beyond} of {self.rocking} runs that rock and stand θ passes "
-                "α, at which the static moment vanishes (balance_ratio above one). The model is for small rotations: "
-                f"whether these overturn is to be decided by a complete model on rigid ground, such as "
-                f"{complete_model_label(self.model)}."
+                translated(
+                    "{structure}, {model}: in {k} of {n} runs that rock and stand θ passes α, at which the static "
+                    "moment vanishes (balance_ratio above one). The model is for small rotations: whether these "
+                    "overturn is to be decided by a complete model on rigid ground, such as {complete}.",
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.beyond,
+                    n=self.rocking,
+                    complete=complete_model_label(self.model),
+                )
             )
         return found
 

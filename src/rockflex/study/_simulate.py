@@ -213,7 +213,8 @@ def simulate_many(
     Parameters
     ----------
     structures, motions
-        One of each, a sequence, or a mapping from names; a suite is a sequence of motions.
+        One of each, a sequence, or a mapping from names; a suite is a sequence of motions, and of a `Selection` its
+        scaled records are used.
     models
         Labels or models, one or a sequence.
     output
@@ -335,7 +336,7 @@ def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categ
 
 def simulate_set(
     structure: RockingStructure | RockingProperties,
-    motions: Motions | Selection,
+    motions: Motions,
     model: str | Model = "MDOF-S",
     rule: Rule | None = None,
     periods: tuple[float, float] | None = None,
@@ -391,10 +392,9 @@ def simulate_set(
     >>> rf.simulate_set(frame, chosen, "2DOF-S", rule="ec8")
     RecordSet(2DOF-S under 7 records, 0 overturned, rule='ec8')
     """
-    given = motions.suite if isinstance(motions, Selection) else motions
     if periods is None and isinstance(motions, Selection):
         periods = (float(motions.periods.min()), float(motions.periods.max()))
-    records, span = checked_motions(given), None if periods is None else checked_period_range(periods)
+    records, span = checked_motions(motions), None if periods is None else checked_period_range(periods)
     kept = checked_rule(rule, len(records))
     table = simulate_many(
         *(structure, records, model, "history", 1.0, free_vibration, bouc_wen, impact, initial, workers),

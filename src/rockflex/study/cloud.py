@@ -113,7 +113,8 @@ def run_cloud(
     structures
         One, a sequence (named "S1", "S2", ...), or a mapping from names.
     motions
-        One, a sequence such as a suite, or a mapping from names. All names must differ.
+        One, a sequence such as a suite, a mapping from names, or a `Selection`, whose scaled records are used. All
+        names must differ.
     models, scales, free_vibration, bouc_wen, impact
         As in `simulate_many`.
     friction

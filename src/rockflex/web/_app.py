@@ -7,7 +7,7 @@ from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any, get_args
+from typing import Any, cast, get_args
 from urllib.parse import quote
 
 import anyio
@@ -21,7 +21,7 @@ from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
-from rockflex._language import CATALOGUES, use_language
+from rockflex._language import CATALOGUES, Language, use_language
 from rockflex._units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
 from rockflex.solve import RunStoppedError, stopping_when
@@ -146,10 +146,12 @@ class PageServer:
             query, most = request.query_params, limits.MAX_FOLDER_BYTES
             body = await uploaded_file_bytes(request, most + MAX_LIST_BYTES, most)
             units, dt = query.get("units") or None, _sampling_step_in_query(query.get("dt", ""), FIELD)
+            language = cast("Language | None", query.get("language"))
 
             def work() -> dict[str, Any]:
                 files = unpacked_record_files(body)
-                folder = read_record_folder(files, units, dt)
+                with use_language(language):
+                    folder = read_record_folder(files, units, dt)
                 token = self.uploads.folders.add(folder, files, f"{units} {dt}")
                 return {"folder": token, **folder.report}
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
+from rockflex._language import translated
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
 from rockflex.motion._record_info import unique_record_names
 from rockflex.web._limits import (
@@ -236,7 +237,11 @@ def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: f
         SurveyEntry(
             file=each.name,
             taken=False,
-            reason=f"it has {each.size / 1e6:.1f} MB, but the page takes files of {MAX_FILE_BYTES / 1e6:g} MB at most",
+            reason=translated(
+                "it has {size} MB, but the page takes files of {most} MB at most",
+                size=f"{each.size / 1e6:.1f}",
+                most=f"{MAX_FILE_BYTES / 1e6:g}",
+            ),
         )
         for each in files
         if each.content is None
@@ -317,7 +322,8 @@ def _folder_report(
             }
             place += 1
         elif paired.taken:
-            found |= {"reason": "vertical component, which can be used with the horizontal ones", "paired": True}
+            found["reason"] = translated("vertical component, which can be used with the horizontal ones")
+            found["paired"] = True
         entries.append(found)
     stations = [
         {

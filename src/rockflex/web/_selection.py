@@ -160,7 +160,7 @@ class LatestSelections:
     def of(self, state: PageState, uploads: UploadedRecords) -> Selected:
         """Return the records chosen for the target of a state, and remarks on the choice."""
         choice = state.target
-        key = json.dumps([choice.model_dump(exclude={"shown"}), self._source(state)])
+        key = json.dumps([choice.model_dump(exclude={"shown"}), self._source(state), state.language])
         found = self._selections.get(key)
         if found is not None:
             return found

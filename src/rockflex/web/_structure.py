@@ -11,6 +11,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
+from rockflex._language import translated
 from rockflex.modal import PLACE, Ground, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
@@ -173,11 +174,14 @@ def _freedoms_of_matrices_text(table: StructureTable) -> str:
     size = len(mass)
     found = DegreesOfFreedom.of(given["heights"], given.get("rotations", ()), size)
     others = size - found.translates.size - found.rotates.size
-    kinds = ((found.translates.size, "sideways"), (found.rotates.size, "rotational"), (others, "other"))
-    counted = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
+    sideways, rotational = found.translates.size, found.rotates.size
+    kinds = [translated("{n} sideways", n=sideways)] * bool(sideways)
+    kinds += [translated("{n} rotational", n=rotational)] * bool(rotational)
+    kinds += [translated("{n} other", n=others)] * bool(others)
+    told = translated("Degrees of freedom: {kinds}.", kinds=", ".join(kinds))
     bare = size - int(np.count_nonzero(mass.any(axis=1) if mass.ndim == 2 else mass))
-    condensed = f" Without mass, and condensed out: {bare}." if bare and isinstance(table, MatricesTable) else ""
-    return f"Degrees of freedom: {counted}.{condensed}"
+    condensed = bare and isinstance(table, MatricesTable)
+    return f"{told} {translated('Without mass, and condensed out: {n}.', n=bare)}" if condensed else told
 
 
 def _mode_adequacy_view(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:

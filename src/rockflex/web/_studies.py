@@ -11,7 +11,7 @@ from rockflex import fragility
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
-from rockflex._shown import number_with_noun
+from rockflex._language import translated
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
 from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
@@ -153,14 +153,18 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     if failed:
         first = runs["error"].dropna()
         view["notes"].append(
-            f"{number_with_noun(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}"
+            translated(
+                "{n} run could not be solved. {error}" if failed == 1 else "{n} runs could not be solved. {error}",
+                n=failed,
+                error=first.iloc[0] if len(first) else "",
+            )
         )
     view["notes"] += [text for each in count_pivot_lifts(solved) for text in each.warnings]
     if len(solved) < MIN_RUNS_FITTED:
         return as_json_value(view)
     im = solved[choice.measure].to_numpy(dtype=float)
     if not (im > 0.0).all() or im.min() == im.max():
-        view["notes"].append("All runs so far have the same intensity.")
+        view["notes"].append(translated("All runs so far have the same intensity."))
         return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
     fits, reasons = fragility.fit_each_cloud(solved, choice.measure, nominal=choice.limit == fragility.NOMINAL.name)
@@ -302,7 +306,7 @@ def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
-        view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
+        view["notes"] += [f"{translated(str(tendon))}: {note}" for note in dict.fromkeys(part["note"]) if note]
     view["notes"] += [text for each in count_pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(

@@ -8,6 +8,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive
+from rockflex._language import translated
 from rockflex.fragility import HazardCurve
 from rockflex.study.design._exceedance_fit import (
     ShakingLevel,
@@ -191,28 +192,47 @@ def _common_value(column: "pd.Series[Any]") -> float:
 def _least_width(widths: Array, values: Array, target: float) -> _LeastWidth:
     """Least width, outcome and notes, from values at rising widths."""
     known = np.isfinite(values)
-    notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
+    notes: list[str] = []
+    if not known.all():
+        lost = int((~known).sum())
+        notes.append(translated("{k} of {n} bases have no value and were left out.", k=lost, n=known.size))
     b, y = widths[known], values[known]
     rises = [(one, other) for (one, low), (other, high) in pairwise(zip(b, y, strict=True)) if high > low]
     meets = y <= target
     if rises:
         one, other = rises[0]
-        times = "" if len(rises) == 1 else f" and {len(rises) - 1} times more"
-        notes.append(f"It does not fall everywhere: it rises between B = {one:.4g} and {other:.4g} m{times}.")
+        notes.append(
+            translated(
+                "It does not fall everywhere: it rises between B = {one} and {other} m."
+                if len(rises) == 1
+                else "It does not fall everywhere: it rises between B = {one} and {other} m and {n} times more.",
+                one=f"{one:.4g}",
+                other=f"{other:.4g}",
+                n=len(rises) - 1,
+            )
+        )
     width, outcome = math.nan, "not met"
     if meets.all() and b.size:
         width, outcome = float(b[0]), "all meet it"
-        notes.append(f"Every base meets it; a base below B = {b[0]:.4g} m might do.")
+        notes.append(translated("Every base meets it; a base below B = {width} m might do.", width=f"{b[0]:.4g}"))
     elif b.size and meets[-1]:
         last = int(np.flatnonzero(~meets)[-1])
         width, outcome = _interpolated_width(b[last : last + 2], y[last : last + 2], target), "met"
         if meets[:last].any():
             outcome = "met more than once"
-            notes.append(f"Narrower bases meet it too, from B = {b[meets][0]:.4g} m, but {b[last]:.4g} m does not.")
+            notes.append(
+                translated(
+                    "Narrower bases meet it too, from B = {width} m, but {wider} m does not.",
+                    width=f"{b[meets][0]:.4g}",
+                    wider=f"{b[last]:.4g}",
+                )
+            )
     elif b.size:
-        notes.append(f"The widest base, B = {b[-1]:.4g} m, has {y[-1]:.3g}.")
+        notes.append(
+            translated("The widest base, B = {width} m, has {value}.", width=f"{b[-1]:.4g}", value=f"{y[-1]:.3g}")
+        )
         if meets.any():
-            notes.append(f"Narrower bases meet it, from B = {b[meets][0]:.4g} m.")
+            notes.append(translated("Narrower bases meet it, from B = {width} m.", width=f"{b[meets][0]:.4g}"))
     return _LeastWidth(width, outcome, not rises, " ".join(notes))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_in_range, checked_positive, real_or_nan
 from rockflex._errors import InputError, SolverError
+from rockflex._language import translated
 from rockflex._shown import shown
 from rockflex.fragility import (
     LIMIT_STATES,
@@ -220,9 +221,9 @@ class FittedExceedance(NamedTuple):
     def band(self, level: ShakingLevel, confidence: float, n_groups: int) -> tuple[float, float, str]:
         """Lower and upper confidence limit of the probability or rate, and a note; NaN where there is none."""
         if self.certain or isinstance(self.curve, UnanimousOutcome):
-            return math.nan, math.nan, "No band: all runs had the same outcome."
+            return math.nan, math.nan, translated("No band: all runs had the same outcome.")
         if n_groups < 2:
-            return math.nan, math.nan, "No band: all runs belong to one recording."
+            return math.nan, math.nan, translated("No band: all runs belong to one recording.")
         if level.hazard is None:
             low, high = (float(end[0]) for end in self.curve.band(level.nodes, confidence))
             return low, high, ""
@@ -236,7 +237,7 @@ def design_row(
     """Columns of `design_table` for all runs of one design and model."""
     solved, runs = group[group["status"].notna()], DesignRuns.of(group, limit, measure)
     found: dict[str, Any] = {"limit": math.nan, "state": "", **_empty_exceedance_columns(level)}
-    found |= {"note": "No run was solved: see the column error."}
+    found |= {"note": translated("No run was solved: see the column error.")}
     if runs is not None:
         bound = runs.state.threshold if is_rotation_limit_state(runs.state) else math.nan
         found = {"limit": bound, "state": runs.state.label, **_exceedance_columns(runs, level, confidence)}
@@ -265,10 +266,15 @@ def _exceedance_columns(runs: DesignRuns, level: ShakingLevel, confidence: float
         found["overturning"] = level.exceedance(fit.overturning)[0]
         notes = list(fit.notes)
         if level.hazard is None and not runs.im.min() <= level.nodes[0] <= runs.im.max():
-            ends = f"{runs.im.min():.3g} to {runs.im.max():.3g}"
-            notes.append(f"The level lies outside the measures of the runs, {ends}: the result is extrapolated.")
+            notes.append(
+                translated(
+                    "The level lies outside the measures of the runs, {low} to {high}: the result is extrapolated.",
+                    low=f"{runs.im.min():.3g}",
+                    high=f"{runs.im.max():.3g}",
+                )
+            )
         if not np.isfinite(fit.curve.probability(level.nodes)).all():
-            notes.append("There is no probability: a curve that it needs could not be fitted.")
+            notes.append(translated("There is no probability: a curve that it needs could not be fitted."))
             return found | {"note": " ".join(notes)}
         found[name], beyond = level.exceedance(fit.curve)
     except (InputError, SolverError) as error:

@@ -3,7 +3,7 @@
 import { attempt, get, isArchive, send, sendAll } from "../api.js";
 import { h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
 import { box, field, fileBox, select, trouble } from "../form.js";
-import { counted, t } from "../texts.js";
+import { counted, language, t } from "../texts.js";
 import { inUnit, unit as unitIn } from "../units.js";
 
 const UNITS = [["", t("as in the file")], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
@@ -87,7 +87,7 @@ export function folder(app, complain) {
     complain(large ? { "record.folder": large } : {});
     if (large) return;
     await attempt(async () => {
-      const found = await sendAll(`/api/folder?${new URLSearchParams({ units: unit, dt: step })}`, files, most);
+      const found = await sendAll(`/api/folder?${new URLSearchParams({ units: unit, dt: step, language })}`, files, most);
       if (mine !== times) return;
       draw(found);
       const first = found.entries.find((entry) => entry.taken);
