@@ -12,10 +12,11 @@ from rockflex.plot.animation._poses import (
     ROUND_FACTORS,
     default_amplification,
     frame_timing,
-    structure_outline,
+    outline_of_response,
     structure_poses,
 )
 from rockflex.plot.animation._scene import structure_state_text
+from rockflex.structure._outline import BODY
 
 FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]
@@ -32,7 +33,14 @@ TIMES = np.linspace(0.0, 12.0, 161)
 def posed(response, structure=None, times=TIMES):
     """The curve of a response, and its poses at some times."""
     (curve,) = response_curves(response)
-    return curve, structure_poses(curve, structure_outline(curve.history, structure, 0), times, 1.0)
+    return curve, structure_poses(curve, outline_of_response(curve.history, structure, 0), times, 1.0)
+
+
+def bent(poses, frame, amplification=1.0):
+    """Where the axis of the structure is drawn."""
+    heights = poses.outline.heights
+    axis = np.column_stack((np.zeros(heights.size), heights, np.full(heights.size, BODY)))
+    return poses.moved(frame, axis, amplification)
 
 
 @pytest.fixture(scope="module")
@@ -54,10 +62,10 @@ def runs():
 def test_the_top_of_a_complete_model_is_drawn_where_the_response_has_it(runs, name):
     at = runs[name].at(TIMES)
     _, poses = posed(runs[name])
-    drawn = np.array([poses.bent(k, 0.0, 1.0)[0][-1] for k in range(TIMES.size)])
+    drawn = np.array([bent(poses, k)[0][-1] for k in range(TIMES.size)])
     assert np.abs(at.rotation).max() > 0.01
     np.testing.assert_allclose(drawn, at.total_top_displacement, atol=1e-9)
-    every = np.array([poses.bent(k, 0.0, 1.0)[0][1:] for k in range(TIMES.size)])
+    every = np.array([bent(poses, k)[0][1:] for k in range(TIMES.size)])
     np.testing.assert_allclose(every, at.total_floor_displacement, atol=1e-9)
 
 
@@ -66,7 +74,7 @@ def test_the_top_of_a_simplified_model_is_drawn_there_but_for_squares_of_the_rot
     at = runs[name].at(TIMES)
     curve, poses = posed(runs[name])
     p = curve.history.model.properties
-    drawn = np.array([poses.bent(k, 0.0, 1.0)[0][-1] for k in range(TIMES.size)])
+    drawn = np.array([bent(poses, k)[0][-1] for k in range(TIMES.size)])
     linear = at.slip + at.top_displacement + p.top_height * at.rotation
     error = (p.half_width + np.abs(at.top_displacement)) * at.rotation**2 + p.top_height * np.abs(at.rotation) ** 3
     assert (np.abs(drawn - linear) <= error + 1e-12).all()
@@ -137,7 +145,7 @@ def test_words_are_those_of_the_response(runs, name):
 
 def test_impacts_are_marked_for_a_moment_of_the_animation(runs):
     curve, _ = posed(runs["simplified"])
-    outline = structure_outline(curve.history, None, 0)
+    outline = outline_of_response(curve.history, None, 0)
     blow = float(curve.history.impact_times[0])
     for speed in (1.0, 0.1):
         times = blow + speed * np.array([-0.01, 0.001, 0.11, 0.13])
@@ -151,7 +159,7 @@ def test_outlines_follow_what_is_known():
                             damping_ratio=0.02)  # fmt: skip
     run = rf.simulate(tower, rf.ricker_pulse(4.0, 1.0), "3DOF-S")
     (curve,) = response_curves(run)
-    straight, bent = (structure_outline(curve.history, each, 0) for each in (None, tower))
+    straight, bent = (outline_of_response(curve.history, each, 0) for each in (None, tower))
     assert (straight.kind, straight.top) == ("frame", pytest.approx(100.0))  # its floors are all that is known
     assert bent.kind == "column"
     assert bent.heights.size > 10
@@ -166,11 +174,32 @@ def test_outlines_follow_what_is_known():
     }
     for kind, (structure, model, given) in kinds.items():
         (curve,) = response_curves(rf.simulate(structure, rf.ricker_pulse(4.0, 1.0), model))
-        assert structure_outline(curve.history, given, 0).kind == kind
+        assert outline_of_response(curve.history, given, 0).kind == kind
     held = rf.Restrained(PIER, rf.Tendon(initial_force=2.0e6, stiffness=25e6))
     (curve,) = response_curves(rf.simulate(held, rf.ricker_pulse(4.0, 1.0), "2DOF-S"))
-    assert structure_outline(curve.history, held, 0).kind == "mast"
-    assert structure_outline(curve.history, held, 0).shapes.shape[1] == 1
+    assert outline_of_response(curve.history, held, 0).kind == "mast"
+    assert outline_of_response(curve.history, held, 0).shapes.shape[1] == 1
+
+
+def test_points_of_an_outline_move_as_they_are_held():
+    tower = rf.Leaning(make_frame(n_stories=50, period=3.0), 1e3)
+    brace = rf.ViscousDamper(coefficient=1e5, between=(0, 43), cosine=0.8)
+    tie = rf.Tendon(initial_force=1e5, stiffness=5e6, height=9.0, cosine=-0.6)
+    _, poses = posed(rf.simulate(rf.Restrained(tower, [brace, tie]), RECORD.scaled(3.0), "2DOF-S"), tower)
+    outline, frame = poses.outline, int(np.abs(poses.rotation).argmax())
+    assert outline.heights.size <= 41
+    (_, low), (symbol, anchored) = outline.elements
+    assert low[:, 1] == pytest.approx([0.0, 43 * 3.0])
+    (x, z, _), (_, height, _) = anchored
+    assert (symbol, height, z) == ("tendons", 9.0, pytest.approx(0.0))
+    assert x / np.hypot(x, height) == pytest.approx(0.6)
+    across, up = poses.moved(frame, anchored, 5.0, sunk=0.7)
+    assert (across[0], up[0]) == pytest.approx((x, -0.7))  # in the ground, which is lower than the base on springs
+    (leaning,) = (each.points for each in outline.strokes if each.width == 1.6)
+    across, up = poses.moved(frame, leaning, 5.0)
+    assert up == pytest.approx(outline.heights)  # its floors move it sideways
+    assert across[0] == leaning[0, 0]
+    assert (np.abs(across - leaning[:, 0])[-5:] > 0.5 * np.abs(bent(poses, frame, 5.0)[0])[-5:]).all()
 
 
 @pytest.mark.parametrize("name", ["simplified", "springs", "fixed", "block"])
@@ -180,7 +209,7 @@ def test_the_usual_amplification_is_the_largest_that_keeps_the_limit(runs, name)
     assert factor in ROUND_FACTORS
 
     def reach(by):
-        there = [poses.bent(k, 0.0, by)[0][-1] for k in range(TIMES.size)]
+        there = [bent(poses, k, by)[0][-1] for k in range(TIMES.size)]
         return np.abs(there).max() / poses.outline.size
 
     assert factor == 1.0 or reach(factor) <= MAX_DRAWN_MOTION + 0.02

@@ -142,6 +142,31 @@ def test_springs_are_dragged_in_pairs(visit, link) -> None:
     assert visitor.page.locator('[data-path="ground.springs.positions"] input').input_value() == f"{left:g}, {right:g}"
 
 
+@pytest.mark.parametrize("width", [1280, 420])
+def test_handles_cover_no_words(visit, link, width) -> None:
+    ground = {"mat_mass": 2e5, "springs": {"stiffness": 5e8, "heave_damping_ratio": 0.3}}
+    state = {"structure": as_json_value(FUSES), "ground": ground, "models": ["MDOF-S"], "scale": 2.0}
+    page = visit(link(state), viewport={"width": width, "height": 860}).page
+    page.locator('[data-handle="spring 1"]').wait_for()
+    words, dots = page.evaluate(
+        """() => {
+          const [{ stage }, words] = [rockflexDrawn.player, []];
+          const { prototype } = CanvasRenderingContext2D;
+          const { fillText } = prototype;
+          prototype.fillText = function (text, x, y) { words.push([x, y, this.measureText(text).width]); };
+          stage.draw();
+          Object.assign(prototype, { fillText });
+          const { x, y } = stage.canvas.getBoundingClientRect();
+          const boxes = [...stage.layer.children].map((each) => each.getBoundingClientRect());
+          return [words, boxes.map((each) => [each.left - x, each.right - x, each.top - y, each.bottom - y])];
+        }"""
+    )
+    assert (len(words), len(dots)) == (3, 7)
+    for x, y, wide in words:
+        for left, right, top, bottom in dots:
+            assert x + wide / 2 < left or x - wide / 2 > right or y < top or y - 10 > bottom
+
+
 @pytest.mark.parametrize("tab", ["structure", "response"])
 def test_on_a_phone_the_drawing_stays_in_sight(visit, link, tab) -> None:
     visitor = visit(link({"structure": as_json_value(PIER), "tab": tab}), viewport={"width": 420, "height": 860})
@@ -166,13 +191,13 @@ def test_what_is_dragged_alone_changes(client, visit, link, place) -> None:
         }"""
     )
     assert "B" in [name for name, _, _ in found]
-    before = client.ask("/api/structure", client.state(structure=as_json_value(PRESETS[place]["structure"])))["run"]
+    before = client.ask("/api/structure", client.state(structure=as_json_value(PRESETS[place]["structure"])))
 
     def measured(view) -> dict:
         return {"B": view["half_width"], "H": view["heights"][-1], "T": view["period"]}
 
     for name, wanted, structure in found:
-        after = measured(client.ask("/api/structure", client.state(structure=structure))["run"])
+        after = measured(client.ask("/api/structure", client.state(structure=structure)))
         assert after[name] == pytest.approx(wanted, rel=1e-4)
         if name != "H":  # another height has another period, unless that is given
             rest = {key: value for key, value in measured(before).items() if key != name}

@@ -210,6 +210,9 @@ def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
         (model,) = run["models"]
         assert model["label"] == main
         assert model["peaks"]["max_rotation"] == expected.max_rotation
+        assert answer["heights"] == [0.0, 3.0, 6.0, 9.0, 12.0, 15.0]
+        assert not {"heights", "strokes", "ground"} & set(run)
+        assert [name for name in model["peaks"] if name.startswith("time_of_")] == ["time_of_max_rotation"]
         assert run["fixed_base_moment"] == pytest.approx(fixed.max_base_moment, rel=1e-9)  # on rigid ground
         assert run["fixed_top_displacement"] == pytest.approx(fixed.max_total_top_displacement, rel=1e-9)
         assert np.abs(client.unpack(model["rotation"])).max() == pytest.approx(expected.max_rotation, rel=0.01)

@@ -10,7 +10,7 @@ from rockflex._language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import Size
 from rockflex.plot._history import plot_history, response_curves
-from rockflex.plot.animation._poses import FrameTiming, default_amplification, structure_outline, structure_poses
+from rockflex.plot.animation._poses import FrameTiming, default_amplification, outline_of_response, structure_poses
 from rockflex.plot.animation._scene import StructurePanel
 from rockflex.response import Comparison
 
@@ -74,7 +74,7 @@ def draw_alternatives(comparison: Comparison, *, width: float, height: float) ->
     with figures.applied_figure_style():
         curves = response_curves(runs, [figures.literal_text(name) for name in comparison.names])
         both = zip(curves, comparison.structures, strict=True)
-        outlines = [structure_outline(curve.history, structure, i) for i, (curve, structure) in enumerate(both)]
+        outlines = [outline_of_response(curve.history, structure, i) for i, (curve, structure) in enumerate(both)]
         poses = [
             structure_poses(curve, outline, times, _STILL) for curve, outline in zip(curves, outlines, strict=True)
         ]

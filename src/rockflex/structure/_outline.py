@@ -1,31 +1,146 @@
-"""The points of a structure that drawings show, with their displacements."""
+"""How a structure looks: its lines and what holds it, at rest, and how each of their points moves."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.modal import (
+    BaseElement,
+    FrictionDamper,
+    ModalProperties,
+    RockingProperties,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+)
+from rockflex.structure._frames import FishBone, Frame, LumpedStructure
+from rockflex.structure._structure import ModifiedStructure, Structure
+from rockflex.structure._towers import CantileverWithTipMass
+
+Kind = Literal["block", "frame", "column", "mast"]
+GROUND, UPRIGHT, BODY = 0.0, 1.0, 2.0
+"""How a point moves: not at all, sideways with its floor, or with the structure, which turns and bends."""
+
+MAX_HEIGHTS = 40  # heights of a structure that are drawn, besides the base
+_MAX_THICK_FLOORS = 25
+_COLUMN, _LEANING, _BRACE = 0.82, 1.8, 0.6  # x over the distance from the axis to the nearer edge
+_MASS, _BRACKET, _MAX_BRACKET, _TENDON, _SUNK = 0.06, 0.16, 0.4, 0.6, 0.02  # lengths over the height
+
+_FUSE = [(3.5, 0.0), (3.5, 0.26), (1.2, 0.36), (1.2, 0.64), (3.5, 0.74), (3.5, 1.0)]
+Symbol: TypeAlias = list[tuple[list[tuple[float, float]], float, bool]]
+SYMBOLS: dict[str, Symbol] = {
+    "tendons": [([(0.0, 0.0), (0.0, 1.0)], 1.5, False)],
+    "fuse": [([(-x, y) for x, y in _FUSE] + _FUSE[::-1], 1.0, True)],  # thick where held, narrow where it yields
+    "damper": [  # a piston in a cylinder
+        ([(0.0, 0.0), (0.0, 0.2)], 1.8, False),
+        ([(-5.0, 0.75), (-5.0, 0.2), (5.0, 0.2), (5.0, 0.75)], 1.8, False),
+        ([(-3.2, 0.5), (3.2, 0.5)], 2.6, False),
+        ([(0.0, 0.5), (0.0, 1.0)], 1.8, False),
+    ],
+    "friction": [  # two plates with the bolt that clamps them
+        ([(-1.7, 0.0), (-1.7, 0.68)], 3.0, False),
+        ([(1.7, 0.32), (1.7, 1.0)], 3.0, False),
+        ([(-6.0, 0.5), (6.0, 0.5)], 1.8, False),
+    ],
+    "law": [([(0.0, 0.0), (0.0, 1.0)], 1.5, False)],  # an element given by its branches
+    "spring": [([(0, 0), (0, 0.12), (1, 0.24), (-1, 0.4), (1, 0.56), (-1, 0.72), (0, 0.88), (0, 1)], 1.4, False)],
+}
+"""Lines of what holds a base: points (pixels across, share of the length), width in pixels, and whether it is filled.
+
+A spring is 1 wide to either side. The others are named after their colours on the page.
+"""
+_SYMBOL_OF: dict[type[BaseElement], str] = {
+    Tendon: "tendons",
+    YieldingDissipator: "fuse",
+    ViscousDamper: "damper",
+    FrictionDamper: "friction",
+}
 
 
-def outline_of_structure(p: RockingProperties, modes: ModalProperties | None, most: int) -> tuple[Array, Array]:
-    """Return the heights of a structure and how its modes displace them.
+class Stroke(NamedTuple):
+    """A line of a drawing: x and z in m and how it moves of each point, shape (k, 3); width in pixels; if filled."""
 
-    Parameters
+    points: Array
+    width: float
+    filled: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class StructureOutline:
+    """Lines of a structure at rest, in m from the axis of its masses and from the base.
+
+    Attributes
     ----------
-    p
-        Its properties. Without `modes` their floors are drawn; where they have none, a straight line to the top, or a
-        block as high as its centre of mass is twice.
-    modes
-        Its modes, if they are known, at least as many as those of `p`.
-    most
-        Number of points above the base; others are left out, evenly by height.
-
-    Returns
-    -------
-    heights : ndarray, shape (m,)
-        From zero at the base to the top in m, ascending.
-    shapes : ndarray, shape (m, n)
-        Horizontal displacement of these points per unit of each D_n, relative to the base.
+    kind
+        ``"block"`` (rigid), ``"frame"`` (columns and floors), ``"column"`` or ``"mast"`` (a column with a mass on top).
+    heights
+        From zero at the base to the top, ascending, shape (m,).
+    shapes
+        Horizontal displacement of these points per unit of each D_n, relative to the base, shape (m, n).
+    left, right
+        Edges of the base.
+    strokes
+        Lines of the structure, from the back to the front; the last is the base.
+    elements
+        The symbol of each element, and both ends as the points of a stroke, shape (2, 3); the ground comes first.
     """
+
+    kind: Kind
+    heights: Array
+    shapes: Array
+    left: float
+    right: float
+    strokes: tuple[Stroke, ...]
+    elements: tuple[tuple[str, Array], ...]
+
+    @property
+    def top(self) -> float:
+        """Height of the top above the base in m."""
+        return float(self.heights[-1])
+
+    @property
+    def size(self) -> float:
+        """The larger of height and width in m."""
+        return max(self.top, self.right - self.left)
+
+
+def structure_outline(p: RockingProperties, structure: Structure | RockingProperties | None) -> StructureOutline:
+    """Return the outline of a structure with some properties.
+
+    Without the structure itself, floors are drawn where the properties have them, and otherwise a straight line to the
+    top, or a block as high as its centre of mass is twice. The structure has at least as many modes as `p`.
+    """
+    modes = None
+    if not p.n_modes:
+        kind: Kind = "block"
+    elif structure is not None and not isinstance(structure, RockingProperties):
+        kind, modes = _outline_kind(structure), structure.modal()
+    elif p.floors is not None:
+        kind = "frame" if p.floors.heights.size > 1 else "mast"
+    else:
+        kind = "column"
+    heights, shapes = _heights_and_shapes(p, modes)
+    left, right = -p.pivot(-1).arm, p.pivot(1).arm
+    top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
+    strokes = (*_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
+    ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
+    symbols = [_SYMBOL_OF.get(type(each), "law") for each in p.elements]
+    held = tuple(zip(symbols, ends, strict=True))
+    return StructureOutline(kind, heights, shapes, left, right, strokes, held)
+
+
+def _outline_kind(structure: Any) -> Kind:
+    while isinstance(structure, ModifiedStructure):
+        structure = structure.structure
+    if isinstance(structure, CantileverWithTipMass):
+        return "mast"
+    return "frame" if isinstance(structure, Frame | FishBone | LumpedStructure) else "column"
+
+
+def _heights_and_shapes(p: RockingProperties, modes: ModalProperties | None) -> tuple[Array, Array]:
     if modes is not None:
         heights, shapes = modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes]
     elif p.floors is not None:
@@ -34,5 +149,45 @@ def outline_of_structure(p: RockingProperties, modes: ModalProperties | None, mo
         usual = 1.25 * float(np.abs(p.effective_height).max()) if p.n_modes else 2.0 * p.l0r / p.m_tot
         heights, shapes = np.array([p.top_height or usual]), p.top_ordinate[None, :]
     order = np.argsort(heights, kind="stable")  # those of freedoms may come in any order
-    kept = order[np.unique(np.linspace(0, order.size - 1, min(most, order.size)).astype(int))]
+    kept = order[np.unique(np.linspace(0, order.size - 1, min(MAX_HEIGHTS, order.size)).astype(int))]
     return np.append(0.0, heights[kept]), np.vstack((np.zeros(shapes.shape[1]), shapes[kept]))
+
+
+def _stroke(x: Any, z: Any, width: float, how: Any = BODY, *, filled: bool = False) -> Stroke:
+    return Stroke(np.column_stack(np.broadcast_arrays(x, z, how)), width, filled)
+
+
+def _body_strokes(kind: Kind, heights: Array, left: float, right: float, *, leaning: bool) -> list[Stroke]:
+    """Return the lines above the base; a column beside a frame on a hinge, which its floors hold, if some lean."""
+    near, top = min(-left, right), heights[-1]
+    if kind == "block":
+        return [_stroke([left, right, right, left, left], [0.0, 0.0, top, top, 0.0], 2.0, filled=True)]
+    if kind != "frame":
+        mass = [_stroke([-_MASS * top, _MASS * top], top, 12.0)] if kind == "mast" else []
+        return [_stroke(0.0, heights, 5.0), *mass]
+    x, floors = _COLUMN * near, heights[1:]
+    found = [_stroke(side, heights, 2.4) for side in (-x, x)]
+    found += [_stroke([-x, x], z, 3.2 if floors.size <= _MAX_THICK_FLOORS else 1.0) for z in floors]
+    if leaning:
+        beside = _LEANING * near
+        found.append(_stroke(beside, heights, 1.6, np.append(GROUND, np.full(floors.size, UPRIGHT))))
+        found += [_stroke([x, beside], z, 0.8, [BODY, UPRIGHT]) for z in floors]
+    return found
+
+
+def _element_ends(
+    element: BaseElement, p: RockingProperties, top: float, left: float, right: float
+) -> list[tuple[float, float, float]]:
+    """Return both ends of a brace, of a tie to the ground or an abutment beside it, or of what is under the base."""
+    if element.between is not None and p.floors is not None:
+        x, heights = _BRACE * min(-left, right), np.append(0.0, p.floors.heights)
+        return [(side, float(heights[floor]), BODY) for side, floor in zip((-x, x), element.between, strict=True)]
+    if element.height is not None:
+        lean = math.sqrt(1.0 - element.cosine**2) / abs(element.cosine)
+        reach = min(max(2.5 * max(-left, right), 0.5 * top), element.height / max(lean, 1e-9))
+        foot = (-math.copysign(reach, element.cosine), element.height - lean * reach, GROUND)
+        return [foot, (0.0, element.height, BODY)]
+    x = element.position
+    if isinstance(element, Tendon):
+        return [(x, -_SUNK * top, GROUND), (x, _TENDON * top, BODY)]
+    return [(x, 0.0, GROUND), (x, min(_BRACKET * max(top, right - left), _MAX_BRACKET * top), BODY)]

@@ -21,7 +21,6 @@ from rockflex.web._state import Alternative, PageState, refusals_of_alternative
 from rockflex.web._structure import (
     build_page_structure,
     ground_under_page_structure,
-    ground_view,
     structure_outline_view,
 )
 from rockflex.web._uploads import UploadedRecords
@@ -83,9 +82,8 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
     for name, response in zip(kept, comparison.responses, strict=False):  # the present one is the last
         entry = found[name].structure
         built = build_page_structure(entry)
-        curves, ground = response_curves(built, response, None, SKETCH_POINTS), project.ground.get(name)
-        moving = {"name": name, "models": [curves], "ground": ground_view(ground, built.properties)}
-        ghosts.append(structure_outline_view(entry, built) | moving)
+        moving = {"name": name, "models": [response_curves(built, response, None, SKETCH_POINTS)]}
+        ghosts.append(structure_outline_view(entry, built, project.ground.get(name)) | moving)
     return as_json_value(
         {
             "heads": [f"{name} [{unit}]" if unit else name for name, unit in table.heads],

@@ -316,7 +316,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
 
     def structure(state: PageState, content: dict[str, Any]) -> Any:
         quick = content.get("quick") is True
-        view = {} if quick else structure_view(state.structure, state.ground)
+        view = structure_view(state.structure, state.ground, quick=quick)
         return {**view, "run": sketch_view(state, uploads, quick=quick)}
 
     def response(state: PageState, content: dict[str, Any]) -> Any:

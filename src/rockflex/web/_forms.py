@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 
 from rockflex._json import as_json_value
 from rockflex.modal import PLACE
+from rockflex.structure._outline import SYMBOLS
 from rockflex.structure.file import (
     ELEMENTS,
     KINDS,
@@ -70,6 +71,7 @@ def forms_of_structures() -> dict[str, Any]:
             "elements": {
                 name: {"title": table.title, "fields": _form_fields(table)} for name, table in ELEMENTS.items()
             },
+            "symbols": SYMBOLS,
             "bouc_wen": _form_fields(BoucWenTable),
             "ground": _form_fields(GroundTable),
             "section_part": _form_fields(PartTable),

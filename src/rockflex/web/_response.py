@@ -26,7 +26,6 @@ from rockflex.web._structure import (
     BuiltStructure,
     build_page_structure,
     ground_under_page_structure,
-    ground_view,
     structure_outline_view,
 )
 from rockflex.web._uploads import UploadedRecords
@@ -149,11 +148,11 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
             fixed = run("fixed", main=False)
             moment, top = fixed.max_base_moment, fixed.max_total_top_displacement
     curves = response_curves(built, response, None, SKETCH_POINTS // 2 if quick else SKETCH_POINTS, CURVES[:2])
+    unread = [name for name in curves["peaks"] if name.startswith("time_of_") and name != "time_of_max_rotation"]
+    curves["peaks"] = {name: value for name, value in curves["peaks"].items() if name not in unread}
     return as_json_value(
         {
-            **structure_outline_view(state.structure, built),
             "models": [curves],
-            "ground": ground_view(ground, p),
             "fixed_base_moment": moment,
             "fixed_top_displacement": top,
         }
@@ -176,10 +175,9 @@ def response_view(
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
-            **structure_outline_view(state.structure, built),
+            **structure_outline_view(state.structure, built, ground_under_page_structure(state.ground, p)),
             "nominal": p.nominal_overturning_rotation,
             "models": curves,
-            "ground": ground_view(ground_under_page_structure(state.ground, p), p),
             "element": drawn,
             "held": _element_peaks_view(p, motion, main, found, state),
             "self_centring": self_centring_view(
@@ -222,7 +220,7 @@ def response_curves(
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     kept = np.unique(np.concatenate((envelope_indices(list(curves.values()), points), events, events + 1)))
     modal = history.modal_displacement[kept]
-    drawn = modal @ built.shapes[:, : modal.shape[1]].T
+    drawn = modal @ built.outline.shapes[:, : modal.shape[1]].T
     return {
         "label": response.model,
         "status": response.status,

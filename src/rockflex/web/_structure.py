@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
 from rockflex._language import translated
-from rockflex.modal import PLACE, Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
+from rockflex.modal import PLACE, Ground, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
-from rockflex.structure._outline import outline_of_structure
+from rockflex.structure._outline import StructureOutline, structure_outline
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
 from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
 from rockflex.study._ground_tables import GroundTable
@@ -75,7 +74,6 @@ def section_facts(table: TomlTable) -> list[dict[str, Any]]:
     ]
 
 
-MAX_HEIGHTS_DRAWN = 40  # heights of a structure, at most
 MAX_MODES_DRAWN = 6  # modes drawn
 RECENTRING_HELP = (
     "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself; at θ → 0"
@@ -92,19 +90,13 @@ class BuiltStructure:
         The structure itself.
     properties
         Its parameters with all modes.
-    modes
-        Its modes on a fixed base; None if they are unknown or there are none.
-    heights
-        Heights of the points drawn, in m, from the base to the top, shape (m,).
-    shapes
-        Displacements of these points for a unit of each D_n, shape (m, n).
+    outline
+        Its lines at rest.
     """
 
     structure: Structure | RockingProperties
     properties: RockingProperties
-    modes: ModalProperties | None
-    heights: Array
-    shapes: Array
+    outline: StructureOutline
 
 
 def build_page_structure(entry: StructureEntry) -> BuiltStructure:
@@ -122,25 +114,24 @@ def build_page_structure(entry: StructureEntry) -> BuiltStructure:
 def _build_structure_from_json(text: str) -> BuiltStructure:
     entry = StructureEntry.model_validate(json.loads(text))
     structure = entry.build()
-    if isinstance(structure, RockingProperties):
-        properties, modes = structure, None
-    else:
-        properties, modes = structure.rocking(), structure.modal()
-    return BuiltStructure(structure, properties, modes, *outline_of_structure(properties, modes, MAX_HEIGHTS_DRAWN))
+    properties = structure if isinstance(structure, RockingProperties) else structure.rocking()
+    return BuiltStructure(structure, properties, structure_outline(properties, structure))
 
 
-def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> dict[str, Any]:
-    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it."""
+def structure_view(entry: StructureEntry, table: GroundTable | None = None, *, quick: bool = False) -> dict[str, Any]:
+    """Return the outline of a structure and the ground under it; not `quick`, its parameters and modes as well."""
     built = build_page_structure(entry)
     p = built.properties
+    drawn = structure_outline_view(entry, built, ground_under_page_structure(table, p))
+    if quick:
+        return as_json_value(drawn)
     with errors_as_refusals("structure"):
         modes, judged = _mode_facts(built), _mode_adequacy_view(entry, p)
     return as_json_value(
         {
-            **structure_outline_view(entry, built),
+            **drawn,
             "name": entry.name,
-            "ground": ground_view(ground_under_page_structure(table, p), p),
-            "shapes": built.shapes[:, :MAX_MODES_DRAWN].T,
+            "shapes": built.outline.shapes[:, :MAX_MODES_DRAWN].T,
             "properties": _rocking_parameter_facts(p),
             "freedoms": _freedoms_of_matrices_text(entry.table),
             "section": section_facts(entry.table),
@@ -151,19 +142,26 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
     )
 
 
-def structure_outline_view(entry: StructureEntry, built: BuiltStructure) -> dict[str, Any]:
-    """Return the data of the drawing of a structure."""
-    p = built.properties
+def structure_outline_view(entry: StructureEntry, built: BuiltStructure, ground: Ground | None) -> dict[str, Any]:
+    """Return the data of the drawing of a structure and of the ground under it."""
+    p, outline = built.properties, built.outline
+    drawn = outline.elements[len(entry.tendons) :]
+    points = np.concatenate([*(each.points for each in outline.strokes), *(ends for _, ends in drawn)])
     return {
         "kind": entry.kind,
-        "heights": built.heights,
-        "shapes_known": built.modes is not None,
+        "heights": outline.heights,
+        "shapes_known": not isinstance(built.structure, RockingProperties),
         "mass": p.m_tot * p.weight_share,  # whose weight stands on the base
         "period": 2.0 * np.pi / p.omega[0] if p.n_modes else None,
-        "leaning": p.leaning_mass > 0.0,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
-        "elements": [{name: getattr(table, name) for name in ("kind", *PLACE)} for table in entry.elements or []],
+        "reach": float(np.abs(points[:, 0]).max()),
+        "strokes": [each._asdict() for each in outline.strokes],
+        "elements": [
+            {name: getattr(table, name) for name in ("kind", *PLACE)} | {"symbol": symbol, "ends": ends}
+            for table, (symbol, ends) in zip(entry.elements or [], drawn, strict=True)
+        ],
+        "ground": ground_view(ground, p),
     }
 
 
@@ -195,7 +193,7 @@ def _mode_adequacy_view(entry: StructureEntry, p: RockingProperties) -> dict[str
         found = adequacy(p, base_mass=base)
     except InputError:  # a mass of the base that contradicts the rest
         found = adequacy(p)
-    return {"reason": found.reason, "model": found.model, "model_for_shear": found.model_for_shear}
+    return {"reason": found.reason}
 
 
 def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:

@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._history import ResponseCurve, default_panels, panel_quantities, response_curves
 from rockflex.plot.animation._files import GIF, MP4, animation_path_and_suffix, write_gif, write_video
-from rockflex.plot.animation._poses import default_amplification, frame_timing, structure_outline, structure_poses
+from rockflex.plot.animation._poses import default_amplification, frame_timing, outline_of_response, structure_poses
 from rockflex.plot.animation._scene import AnimatedFigure
 from rockflex.response import Response
 from rockflex.study.progress import ProgressChoice, reporting_progress
@@ -114,7 +114,7 @@ def animate(
     pixels = checked_whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
     structures = _animated_structures(structure, len(curves))
     outlines = [
-        structure_outline(curve.history, each, i)
+        outline_of_response(curve.history, each, i)
         for i, (curve, each) in enumerate(zip(curves, structures, strict=True))
     ]
     poses = [structure_poses(curve, o, timing.times, timing.speed) for curve, o in zip(curves, outlines, strict=True)]

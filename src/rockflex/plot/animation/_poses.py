@@ -1,8 +1,8 @@
-"""Frames of an animation: their instants, the outline of a structure, its poses, and the factor on displacements."""
+"""Frames of an animation: their instants, the poses of a structure, and the factor on displacements."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,20 +11,15 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response import History
-from rockflex.structure import CantileverWithTipMass, FishBone, Frame, LumpedStructure
-from rockflex.structure._outline import outline_of_structure
-from rockflex.structure._structure import ModifiedStructure
+from rockflex.structure._outline import BODY, GROUND, StructureOutline, structure_outline
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
 """Frames per second that a file may have: viewers slow down a faster GIF."""
 
-Kind = Literal["block", "frame", "column", "mast"]
-MAX_POINTS = 60  # heights of a structure that are drawn
-_STORIES = (Frame, FishBone, LumpedStructure)
 _WIDTH_TOLERANCE = 1e-6  # relative difference of two widths of the same base
 _MIN_SLIP_SPEED = 1e-4  # m/s below which a base counts as still
 _IMPACT_SECONDS = 0.12  # s of the animation for which an impact is marked
@@ -93,66 +88,16 @@ def frame_timing(
     return FrameTiming(times, ratio, rate)
 
 
-@dataclass(frozen=True, eq=False)
-class StructureOutline:
-    """Lines of a structure at rest, in m from the axis of its masses and from the base.
-
-    Attributes
-    ----------
-    kind
-        ``"block"`` (rigid), ``"frame"`` (columns and floors), ``"column"`` or ``"mast"`` (a column with a mass on top).
-    heights
-        From zero at the base to the top, ascending, shape (m,).
-    shapes
-        Horizontal displacement of these points per unit of each D_n, relative to the base, shape (m, n).
-    left, right
-        Edges of the base.
-    """
-
-    kind: Kind
-    heights: Array
-    shapes: Array
-    left: float
-    right: float
-
-    @property
-    def top(self) -> float:
-        """Height of the top above the base in m."""
-        return float(self.heights[-1])
-
-    @property
-    def size(self) -> float:
-        """The larger of height and width in m."""
-        return max(self.top, self.right - self.left)
+def outline_of_response(history: History, structure: Any | None, place: int) -> StructureOutline:
+    """Return the outline of the structure of a response, number `place` of those given."""
+    p = history.model.properties
+    if p.n_modes and structure is not None and not isinstance(structure, RockingProperties):
+        _check_structure_of_response(structure, p, place)
+    return structure_outline(p, structure)
 
 
-def structure_outline(history: History, structure: Any | None, place: int) -> StructureOutline:
-    """Return the outline of the structure of a response, number `place` of those given.
-
-    Without the structure itself, floors are drawn where its properties have them, and otherwise a straight line.
-    """
-    p, modes = history.model.properties, None
-    if not p.n_modes:
-        kind: Kind = "block"
-    elif structure is not None and not isinstance(structure, RockingProperties):
-        kind, modes = _outline_kind(structure), _checked_modes(structure, p, place)
-    elif p.floors is not None:
-        kind = "frame" if p.floors.heights.size > 1 else "mast"
-    else:
-        kind = "column"
-    return StructureOutline(kind, *outline_of_structure(p, modes, MAX_POINTS), -p.pivot(-1).arm, p.pivot(1).arm)
-
-
-def _outline_kind(structure: Any) -> Kind:
-    while isinstance(structure, ModifiedStructure):
-        structure = structure.structure
-    if isinstance(structure, CantileverWithTipMass):
-        return "mast"
-    return "frame" if isinstance(structure, _STORIES) else "column"
-
-
-def _checked_modes(structure: Any, p: RockingProperties, place: int) -> ModalProperties:
-    """Return the modes of the structure with these properties."""
+def _check_structure_of_response(structure: Any, p: RockingProperties, place: int) -> None:
+    """Check that a structure has these properties."""
     if not hasattr(structure, "modal"):
         raise InputError(
             f"structure must be that of responses[{place}], such as a Frame, but {type(structure).__name__} was given. "
@@ -167,7 +112,6 @@ def _checked_modes(structure: Any, p: RockingProperties, place: int) -> ModalPro
             "each response if they differ, or leave it out.",
             field="structure",
         )
-    return structure.modal()
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,16 +160,13 @@ class StructurePoses:
         cosine, sine, arm = np.cos(theta), np.sin(theta), np.asarray(x) - pivot
         return across + pivot + arm * cosine + y * sine, up + y * cosine - arm * sine
 
-    def bent(self, frame: int, x: float, amplification: float) -> tuple[Array, Array]:
-        """Return where the points of a vertical line at `x` of the structure are drawn in a frame, bent by its sway."""
-        heights = self.outline.heights
-        return self.place(frame, x + amplification * self.sway[frame], heights, amplification)
-
-    def bent_point(self, frame: int, x: float, height: float, amplification: float) -> tuple[float, float]:
-        """Return where a point of the structure at rest, in m, is drawn in a frame, bent by its sway."""
-        sway = float(np.interp(height, self.outline.heights, self.sway[frame]))
-        across, up = self.place(frame, np.array([x + amplification * sway]), np.array([height]), amplification)
-        return float(across[0]), float(up[0])
+    def moved(self, frame: int, points: Array, amplification: float, sunk: float = 0.0) -> tuple[Array, Array]:
+        """Return where points of the outline, shape (k, 3), are drawn in a frame; those in the ground `sunk` lower."""
+        x, z, how = points.T
+        sway = np.interp(z, self.outline.heights, self.sway[frame])
+        across, up = self.place(frame, x + amplification * sway, z, amplification)
+        still = np.where(z > 0.0, z, z - sunk * (how == GROUND))
+        return np.where(how == GROUND, x, across), np.where(how == BODY, up, still)
 
     def base(self, frame: int, amplification: float) -> tuple[Array, Array]:
         """Return where the left and the right edge of the base are drawn in a frame."""

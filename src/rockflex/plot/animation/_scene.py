@@ -14,29 +14,19 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._language import translated
-from rockflex.modal import BaseElement
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
+from rockflex.structure._outline import SYMBOLS, Stroke
 
 Polyline = Sequence[tuple[float, float]]
 
-ELEMENT_COLORS = {
-    "Tendon": "#b5558a",
-    "YieldingDissipator": "#6b7a00",
-    "ViscousDamper": "#0f7f8c",
-    "FrictionDamper": "#7d5a30",
-}
-LAW_COLOR = "#5b4b8a"  # of elements given by their branches
+ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
 SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
 DARK_RED = "#b3261e"
-COLUMN_OFFSET = 0.82  # of the distance from the axis to the nearer edge, at which columns are drawn
-TENDON_REACH = 0.6  # of the height to which tendons reach
-BRACE_SHARE = 0.6  # of the half width, to either side of which the ends of a brace are drawn
-TIE_REACH = 1.15  # of the half width, where a tie is anchored
-BRACKET_REACH = 26.0  # points above the base to which other elements reach
-_MAX_WIDE_SPRINGS, _MAX_THICK_FLOORS = 4, 25  # springs that are drawn wide; stories with thick floors
+_MAX_WIDE_SPRINGS = 4
+_WIDTH = 0.75  # points of a pixel
 _AT_REST = "#c9ced6"
 HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
 MIN_SPRING, MAX_SPRING = 14.0, 60.0  # points of a spring that is unloaded
@@ -51,27 +41,9 @@ INCHES = 9.6  # width of the figure: letters grow with the number of pixels
 MAX_BESIDE = 2  # structures that are drawn to the left of the histories; more are drawn above them
 
 
-def coil_spring_lines(length: float, half: float) -> list[Polyline]:
-    """Return a coil spring of a length, `half` wide to either side, as lines of (across, along)."""
-    turns = [(0.0 if i in (0, 5) else half * (-1.0) ** i, share * length)
-             for i, share in enumerate((0.12, 0.24, 0.4, 0.56, 0.72, 0.88))]  # fmt: skip
-    return [[(0.0, 0.0), *turns, (0.0, length)]]
-
-
-def element_symbol_lines(kind: str, length: float) -> list[Polyline]:
-    """Return the lines of an element of a class and a length, as lines of (across, along) in points."""
-    if kind == "YieldingDissipator":  # a bar, thick where it is held and narrow where it yields
-        side = [(3.0, 0.0), (3.0, 0.26), (1.0, 0.36), (1.0, 0.64), (3.0, 0.74), (3.0, 1.0)]
-        outline = [(-x, y) for x, y in side] + side[::-1]
-        return [[(x, y * length) for x, y in outline]]
-    if kind == "ViscousDamper":  # a piston in a cylinder
-        cylinder = [(-4.0, 0.75), (-4.0, 0.2), (4.0, 0.2), (4.0, 0.75)]
-        parts = [[(0.0, 0.0), (0.0, 0.2)], cylinder, [(-2.6, 0.5), (2.6, 0.5)], [(0.0, 0.5), (0.0, 1.0)]]
-        return [[(x, y * length) for x, y in part] for part in parts]
-    if kind == "FrictionDamper":  # two plates with the bolt that clamps them
-        plates = [[(-1.4, 0.0), (-1.4, 0.68)], [(1.4, 0.32), (1.4, 1.0)], [(-5.0, 0.5), (5.0, 0.5)]]
-        return [[(x, y * length) for x, y in plate] for plate in plates]
-    return [[(0.0, 0.0), (0.0, length)]]
+def symbol_lines(name: str, length: float, across: float = 0.8) -> list[Polyline]:
+    """Return the lines of a symbol of a length as (across, along) in points."""
+    return [[(across * u, length * share) for u, share in points] for points, *_ in SYMBOLS[name]]
 
 
 def lines_between_points(lines: Sequence[Polyline], start: Array, end: Array) -> tuple[Array, Array]:
@@ -132,23 +104,21 @@ class StructureArtists:
         self, axes: Axes, poses: StructurePoses, curve: ResponseCurve, here: MetresToStagePoints, amplification: float
     ) -> None:
         self._poses, self._here, self._by = poses, here, amplification
-        self._elements = curve.history.model.properties.elements if poses.lifts else ()
-        floors = curve.history.model.properties.floors
-        self._floor_heights = np.zeros(0) if floors is None else floors.heights
-        color = curve.style.color
-        block = poses.outline.kind == "block"
-        self._draw_at_rest(axes)
+        self._sunk = (here.level - here.ground) / here.zoom
+        self._elements = poses.outline.elements if poses.lifts else ()
+        color, strokes = curve.style.color, poses.outline.strokes
+        for points, *_ in strokes:
+            axes.plot(*here((points[:, 0], points[:, 1])), color=_AT_REST, linewidth=0.8)
         self._gap = _animated_area(axes, facecolor=figures.RED, alpha=0.25, linewidth=0.0)
         self._free = _animated_line(axes, SPRING_FREE, 1.0)
         self._pressed = _animated_line(axes, SPRING, 1.2)
-        self._block = _animated_area(axes, facecolor=figures.SHADE, edgecolor=color, linewidth=2.0, visible=block)
-        thick = 3.6 if poses.outline.kind == "column" else 2.0
-        self._columns = _animated_line(axes, color, thick)
-        self._floors = _animated_line(axes, color, 1.0 if poses.outline.heights.size > _MAX_THICK_FLOORS else 2.6)
-        self._base = _animated_line(axes, color, 4.0, capstyle="butt")
-        self._mass = _animated_line(axes, color, 0.0, marker="s", markersize=11.0)
-        kinds = sorted({type(each).__name__ for each in self._elements})
-        self._element_lines = {kind: _animated_line(axes, ELEMENT_COLORS.get(kind, LAW_COLOR), 1.3) for kind in kinds}
+        self._filled = [(_animated_area(axes, facecolor=figures.SHADE), each.points) for each in strokes if each.filled]
+        self._body = [
+            (_animated_line(axes, color, _WIDTH * width, capstyle="butt"), _joined_strokes(strokes, width))
+            for width in sorted({each.width for each in strokes})
+        ]
+        kinds = sorted({symbol for symbol, _ in self._elements})
+        self._element_lines = {kind: _animated_line(axes, ELEMENT_COLORS[kind], 1.3) for kind in kinds}
         self._impacts = _animated_line(
             axes, figures.RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8
         )
@@ -156,15 +126,18 @@ class StructureArtists:
     @property
     def moving(self) -> list[Artist]:
         """Artists that are redrawn in each frame, from the back to the front."""
-        parts = (self._gap, self._free, self._pressed, self._block, self._columns, self._floors, self._mass, self._base)
+        body = [line for line, _ in (*self._filled, *self._body)]
+        parts = (self._gap, self._free, self._pressed, *body)
         return [*parts, *self._element_lines.values(), self._impacts]
 
     def show(self, frame: int) -> None:
         """Move the lines to where they are in a frame."""
         poses, by = self._poses, self._by
+        for area, points in self._filled:
+            area.set_xy(np.column_stack(self._here(poses.moved(frame, points, by))))
+        for line, points in self._body:
+            line.set_data(*self._here(poses.moved(frame, points, by, self._sunk)))
         base = poses.base(frame, by)
-        self._base.set_data(*self._here(base))
-        self._show_body(frame)
         if poses.sprung:
             self._show_springs(frame)
         else:
@@ -173,42 +146,6 @@ class StructureArtists:
         self._show_elements(frame)
         edges = self._here((np.array([poses.outline.left, poses.outline.right]) + by * poses.slip[frame], np.zeros(2)))
         self._impacts.set_data(*(edges if poses.impact[frame] else ([], [])))
-
-    def _lines(self, frame: int | None) -> tuple[list[Array], list[Array], Array]:
-        """Return the columns, the floors and the top in points, in a frame or at rest."""
-        poses = self._poses
-        o = poses.outline
-
-        def bent(x: float) -> Array:
-            if frame is None:
-                return np.column_stack(self._here((np.full(o.heights.size, x), o.heights)))
-            return np.column_stack(self._here(poses.bent(frame, x, self._by)))
-
-        if o.kind == "block":
-            low, high = bent(o.left), bent(o.right)
-            return [np.concatenate((low, high[::-1]))], [], high[-1]
-        if o.kind == "frame":
-            half = COLUMN_OFFSET * min(-o.left, o.right)
-            low, high = bent(-half), bent(half)
-            return [low, high], [np.array(pair) for pair in zip(low[1:], high[1:], strict=True)], high[-1]
-        axis = bent(0.0)
-        return [axis], [], axis[-1]
-
-    def _show_body(self, frame: int) -> None:
-        columns, floors, top = self._lines(frame)
-        if self._poses.outline.kind == "block":
-            self._block.set_xy(columns[0])
-            return
-        self._columns.set_data(*joined_polylines(columns))
-        self._floors.set_data(*joined_polylines(floors))
-        if self._poses.outline.kind == "mast":
-            self._mass.set_data(top[:1], top[1:])
-
-    def _draw_at_rest(self, axes: Axes) -> None:
-        """Draw the structure at rest, faintly."""
-        columns, floors, _ = self._lines(None)
-        closed = [np.vstack((line, line[:1])) for line in columns] if self._poses.outline.kind == "block" else columns
-        axes.plot(*joined_polylines([*closed, *floors]), color=_AT_REST, linewidth=0.8)
 
     def _show_springs(self, frame: int) -> None:
         """Draw the springs from the ground to the base; without contact they have their full length and are lighter."""
@@ -219,41 +156,25 @@ class StructureArtists:
         lines: dict[bool, list[Array]] = {False: [], True: []}
         for x, y in zip(across, up, strict=True):
             free = bool(y > rest)
-            (turns,) = coil_spring_lines(max((rest if free else y) - ground, 1.0), half)
+            (turns,) = symbol_lines("spring", max((rest if free else y) - ground, 1.0), half)
             lines[free].append(np.array(turns) + np.array([x, ground]))
         self._pressed.set_data(*joined_polylines(lines[False]))
         self._free.set_data(*joined_polylines(lines[True]))
 
     def _show_elements(self, frame: int) -> None:
-        """Draw tendons from below the ground into the structure, and the others up to a bracket on the base."""
-        poses, here = self._poses, self._here
-        top, sunk = poses.outline.top, (here.level - here.ground) / here.zoom
-        parts: dict[str, list[Array]] = {kind: [] for kind in self._element_lines}
-        for element in self._elements:
-            kind, x = type(element).__name__, np.array([element.position])
-            if element.attached:
-                ends = np.array(self._ends_of_attached(element, frame))
-                parts[kind].append(np.column_stack(here((ends[:, 0], ends[:, 1]))))
-                continue
-            reach = TENDON_REACH * top if kind == "Tendon" else min(BRACKET_REACH / here.zoom, 0.4 * top)
-            below = sunk + (0.02 * top if kind == "Tendon" else 0.0)
-            start = np.concatenate(here((x, np.array([-below]))))
-            end = np.concatenate(here(poses.place(frame, x, np.array([reach]), self._by)))
-            length = float(np.hypot(*(end - start)))
-            parts[kind].append(np.column_stack(lines_between_points(element_symbol_lines(kind, length), start, end)))
-        for kind, lines in parts.items():
-            self._element_lines[kind].set_data(*joined_polylines(lines))
+        parts: dict[str, list[Array]] = {symbol: [] for symbol in self._element_lines}
+        for symbol, ends in self._elements:
+            start, end = np.column_stack(self._here(self._poses.moved(frame, ends, self._by, self._sunk)))
+            lines = symbol_lines(symbol, float(np.hypot(*(end - start))))
+            parts[symbol].append(np.column_stack(lines_between_points(lines, start, end)))
+        for symbol, lines in parts.items():
+            self._element_lines[symbol].set_data(*joined_polylines(lines))
 
-    def _ends_of_attached(self, element: BaseElement, frame: int) -> list[tuple[float, float]]:
-        """Return both ends of an element between floors, or of a tie to the ground beside the structure, in m."""
-        poses, half = self._poses, BRACE_SHARE * min(-self._poses.outline.left, self._poses.outline.right)
-        if element.between is not None:
-            heights = np.append(0.0, self._floor_heights)
-            levels = zip((-half, half), (float(heights[floor]) for floor in element.between), strict=True)
-            return [poses.bent_point(frame, x, level, self._by) for x, level in levels]
-        height = element.height or 0.0
-        anchor = poses.outline.left if element.cosine > 0.0 else poses.outline.right
-        return [(TIE_REACH * anchor, height), poses.bent_point(frame, 0.0, height, self._by)]
+
+def _joined_strokes(strokes: Sequence[Stroke], width: float) -> Array:
+    """Return the points of the strokes of a width, shape (k, 3), with gaps between them."""
+    gap = np.full((1, 3), np.nan)
+    return np.concatenate([part for each in strokes if each.width == width for part in (each.points, gap)])
 
 
 def _animated_line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:
@@ -382,13 +303,12 @@ def _structure_extent(poses: StructurePoses, amplification: float) -> _Structure
     o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _MAX_FRAMES_SEARCHED).astype(int))
     extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
     extreme += [int(each) for each in (poses.slip.argmax(), poses.slip.argmin())]
+    points = np.concatenate([*(each.points for each in o.strokes), *(ends for _, ends in o.elements)])
     across, up = [1.4 * o.right, 1.4 * o.left, 0.12 * o.top, -0.12 * o.top], [1.03 * o.top]
     for frame in [*frames, *extreme]:
-        for x in (o.left, o.right):
-            there, above = poses.bent(frame, x if o.kind in ("block", "frame") else 0.3 * x, amplification)
-            beside, _ = poses.base(frame, amplification)
-            across += [*there, *beside]
-            up.append(float(above.max()))
+        there, above = poses.moved(frame, points, amplification)
+        across += [*there]
+        up.append(float(above.max()))
     sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
     return _StructureExtent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
 

@@ -1,15 +1,8 @@
-// Strokes and colours of the parts of a drawing: elements between base and ground, springs, and how the base moves on them.
+// Symbols of what holds a base, springs, and how the base moves on them.
 
 import { color } from "./dom.js";
 import { t } from "./texts.js";
 import { inUnit } from "./units.js";
-
-const COLORS = { tendon: "tendons", yielding_dissipator: "fuse", viscous_damper: "damper", friction_damper: "friction" };
-
-const DRAWN = { strand_tendon: "tendon", bar_fuse: "yielding_dissipator", u_plate_fuse: "yielding_dissipator" };
-
-export const colorOf = (kind) => COLORS[DRAWN[kind] ?? kind] ?? "fuse";
-export const isTendon = (kind) => colorOf(kind) === "tendons";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {
@@ -20,49 +13,25 @@ export function nameOf(about, each, place) {
   return t("{element} at {position}", { element: title, position: inUnit(each.position ?? 0, "length") });
 }
 
-// Strokes in pixels, [across, along], of an element that reaches from the ground to `length` along.
-export function strokes(kind, length) {
-  const at = (share) => share * length;
-  const parts = { yielding_dissipator: fuse, viscous_damper: dashpot, friction_damper: plates }[DRAWN[kind] ?? kind];
-  return parts?.(at) ?? [{ points: [[0, 0], [0, length]], width: 1.5 }];
+// Strokes in pixels, [across, along], of a symbol of the server that reaches from the ground to `length` along.
+export function strokes(symbol, length, half = 1) {
+  return symbol.map(([points, width, filled]) => ({ points: points.map(([u, share]) => [half * u, share * length]), width, filled }));
 }
 
-// A coil spring from the ground to `length` along, `half` wide to either side.
-export function coil(length, half) {
-  const turns = [0.12, 0.24, 0.4, 0.56, 0.72, 0.88].map((share, i) => [i === 0 || i === 5 ? 0 : i % 2 ? half : -half, share * length]);
-  return [{ points: [[0, 0], ...turns, [0, length]], width: 1.4 }];
-}
-
-// A bar, thick where it is held and narrow where it yields.
-function fuse(at) {
-  const [a, b, c, d] = [0.26, 0.36, 0.64, 0.74].map(at);
-  return [{
-    points: [[-3.5, 0], [-3.5, a], [-1.2, b], [-1.2, c], [-3.5, d], [-3.5, at(1)],
-      [3.5, at(1)], [3.5, d], [1.2, c], [1.2, b], [3.5, a], [3.5, 0]],
-    fill: true, width: 1,
-  }];
-}
-
-// A piston in a cylinder.
-function dashpot(at) {
-  const [low, middle, high] = [0.2, 0.5, 0.75].map(at);
-  return [
-    { points: [[0, 0], [0, low]], width: 1.8 },
-    { points: [[-5, high], [-5, low], [5, low], [5, high]], width: 1.8 },
-    { points: [[-3.2, middle], [3.2, middle]], width: 2.6 },
-    { points: [[0, middle], [0, at(1)]], width: 1.8 },
-  ];
-}
-
-// Two plates that slide on each other, with the bolt that clamps them.
-function plates(at) {
-  return [
-    { points: [[-1.7, 0], [-1.7, at(0.68)]], width: 3 },
-    { points: [[1.7, at(0.32)], [1.7, at(1)]], width: 3 },
-    { points: [[-6, at(0.5)], [6, at(0.5)]], width: 1.8 },
-    { points: [[-6, at(0.5) - 3], [-6, at(0.5) + 3]], width: 1.8 },
-    { points: [[6, at(0.5) - 3], [6, at(0.5) + 3]], width: 1.8 },
-  ];
+// A symbol along the line from one point to another.
+export function drawBetween(g, symbol, from, end, half) {
+  const [across, along] = [end[0] - from[0], end[1] - from[1]];
+  g.save();
+  g.translate(...from);
+  g.rotate(Math.atan2(along, across) - Math.PI / 2);
+  for (const { points, width, filled } of strokes(symbol, Math.hypot(across, along), half)) {
+    g.lineWidth = width;
+    g.beginPath();
+    for (const [u, v] of points) g.lineTo(-u, v);
+    if (filled) g.fill();
+    else g.stroke();
+  }
+  g.restore();
 }
 
 const SLIDING = 1e-4; // m/s
@@ -89,21 +58,15 @@ export function motionOf(model, [low, high, share], side) {
 }
 
 // Springs from the ground to the base; those that the base has left stand at their full length, in a lighter tone.
-export function drawSprings(g, springs, frame, to, depth) {
+export function drawSprings(g, symbol, springs, frame, to, depth) {
   const half = springs.length > 4 ? 2.5 : 5;
   for (const x of springs) {
     const [across, end] = to(frame.place(x, 0));
     const [, rest] = to([0, 0]);
     const lifted = end < rest;
-    const foot = rest + depth;
     g.strokeStyle = color(lifted ? "control" : "soil");
     g.globalAlpha = lifted ? 0.7 : 1;
-    for (const { points, width } of coil(foot - (lifted ? rest : end), half)) {
-      g.lineWidth = width;
-      g.beginPath();
-      for (const [u, v] of points) g.lineTo(across + u, foot - v);
-      g.stroke();
-    }
+    drawBetween(g, symbol, [across, rest + depth], [across, lifted ? rest : end], half);
   }
   g.globalAlpha = 1;
 }

@@ -85,7 +85,7 @@ function handles(app, view, wanted) {
 
 // `load(quick)` asks for another response; `settle()` is called once a change is over.
 export function drawing(app, settle) {
-  const player = new Player(() => {}, app.about.elements, { height: 400, room: 1.3, loop: true });
+  const player = new Player(() => {}, app.about, { height: 400, room: 1.3, loop: true });
   const { stage } = player;
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dots = new Map(); // by the name of their handle

@@ -2,28 +2,27 @@
 
 import { bracket, FONT } from "./axes.js";
 import { color, context, h } from "./dom.js";
-import { colorOf, depthOf, drawSprings, drawStance, isTendon, motionOf, strokes } from "./drawing.js";
+import { depthOf, drawBetween, drawSprings, drawStance, motionOf } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
 import { t, written } from "./texts.js";
 import { unit } from "./units.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
-const BRACKET = 34; // px above the base to which elements reach
 const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window
 const GHOST = 0.55; // opacity
 const narrow = matchMedia("(max-width: 900px)");
 
 class Stage {
-  // `room` is the height that fits in the drawing, over that of the structure.
-  constructor({ height = 340, room = 1.08 } = {}) {
+  // `room` is the height that fits in the drawing, over that of the structure; `symbols` are those of the server.
+  constructor(symbols, { height = 340, room = 1.08 } = {}) {
     this.canvas = h("canvas", {
       tabindex: 0, role: "application", "aria-roledescription": t("animation"), "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
       "aria-label": t("The structure rocking: space plays and pauses, arrow keys step"),
     });
     this.layer = h("div", { class: "handles" });
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
-    Object.assign(this, { tall: height, height, room, held: false }); // held: the scale stays while something is dragged
+    Object.assign(this, { symbols, tall: height, height, room, held: false }); // held: the scale stays while something is dragged
     this.view = null;
     this.ghosts = []; // other structures that move behind the first model
     this.time = 0;
@@ -47,7 +46,7 @@ class Stage {
     const { heights } = view;
     const [left, right] = this.edges(view);
     const model = view.models[index];
-    const n = heights.length;
+    const [n, sunk] = [heights.length, model.heave ? this.depth / this.zoom : 0];
     const [low, high, share] = bracket(model.t, time);
     const mix = (values, i = low, j = high) => values[i] + share * (values[j] - values[i]);
     const theta = mix(model.rotation);
@@ -62,9 +61,17 @@ class Stage {
       return [across + pivot + dx * Math.cos(turned) + y * Math.sin(turned), up + y * Math.cos(turned) - dx * Math.sin(turned)];
     };
     const u = Array.from({ length: n }, (_, i) => mix(model.points, low * n + i, high * n + i));
+    // A point of the outline stays on the ground (0), moves sideways with its floor (1), or turns and bends (2).
+    const at = ([x, z, how]) => {
+      if (!how) return [x, z > 0 ? z : z - sunk];
+      const i = Math.max(1, heights.findIndex((each) => each >= z * (1 - 1e-9)));
+      const share = (z - heights[i - 1]) / (heights[i] - heights[i - 1]);
+      const [x1, z1] = place(x + amplification * (u[i - 1] + share * (u[i] - u[i - 1])), z);
+      return [x1, how === 1 ? z : z1];
+    };
     return {
-      ...moved, theta, side, u, place,
-      points: u.map((value, i) => place(amplification * value, heights[i])),
+      ...moved, theta, side, place, at,
+      points: heights.map((z) => at([0, z, 2])),
       base: [place(left, 0), place(right, 0)],
       impact: model.impact_times.some((t) => time >= t && time - t < IMPACT),
     };
@@ -77,11 +84,11 @@ class Stage {
     const g = context(this.canvas, width, this.height);
     const count = this.view.models.length;
     const cell = width / count;
-    const { heights } = this.view;
-    const b = Math.max(...[this.view, ...this.ghosts].flatMap((view) => this.edges(view)).map(Math.abs));
-    const top = Math.max(heights.at(-1), ...this.ghosts.map((ghost) => ghost.heights.at(-1)));
+    const all = [this.view, ...this.ghosts];
+    const b = Math.max(...all.flatMap((view) => this.edges(view)).map(Math.abs));
+    const top = Math.max(...all.map((view) => view.heights.at(-1)));
     const falls = this.view.models.some((model) => model.status === "overturned" || model.fall_time !== null);
-    const reach = falls ? top + 2 * b : Math.max(0.32 * top, 1.6 * b);
+    const reach = Math.max(falls ? top + 2 * b : 0.32 * top, 1.6 * b, ...all.map((view) => view.reach));
     const wide = cell / (2.1 * reach);
     if (!this.held || !this.zoom) {
       const first = Math.min((this.height - 74) / (top * this.room), wide);
@@ -121,7 +128,7 @@ class Stage {
       g.setLineDash([]);
     }
     if (model.slip || frame.sprung) drawStance(g, this.edges(), to, ground);
-    if (frame.sprung) drawSprings(g, this.view.ground.springs, frame, to, this.depth);
+    if (frame.sprung) drawSprings(g, this.symbols.spring, this.view.ground.springs, frame, to, this.depth);
     else if (frame.side !== 0) {
       // The gap under the base.
       g.fillStyle = color("c1");
@@ -131,106 +138,17 @@ class Stage {
       g.globalAlpha = 1;
     }
     g.lineJoin = "round";
-    if (index === 0) for (const ghost of this.ghosts) this.#ghost(g, ghost, path, to);
-    g.strokeStyle = color("structure");
-    this.#body(g, frame, path, to);
-    g.lineWidth = 5;
-    path(frame.base);
-    g.stroke();
-    this.#elements(g, frame, to, zoom);
+    g.globalAlpha = GHOST;
+    if (index === 0) for (const ghost of this.ghosts) drawOutline(g, ghost, this.frameAt(0, this.time, this.amplification, ghost), path, ghost.models[0].look.color);
+    g.globalAlpha = 1;
+    drawOutline(g, this.view, frame, path, "structure");
+    for (const { symbol, ends } of this.view.elements) {
+      g.strokeStyle = g.fillStyle = color(symbol);
+      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))));
+    }
     if (frame.impact) this.#blow(g, frame, to);
     this.#words(g, model, index, frame, centre, cell - 8);
     g.restore();
-  }
-
-  #ghost(g, ghost, path, to) {
-    const frame = this.frameAt(0, this.time, this.amplification, ghost);
-    g.globalAlpha = GHOST;
-    g.strokeStyle = color(ghost.models[0].look.color);
-    this.#body(g, frame, path, to, ghost);
-    g.lineWidth = 5;
-    path(frame.base);
-    g.stroke();
-    g.globalAlpha = 1;
-  }
-
-  #body(g, frame, path, to, view = this.view) {
-    const { heights, kind } = view;
-    const [low, high] = this.edges(view);
-    const top = heights[heights.length - 1];
-    const stroke = (points, width) => {
-      g.lineWidth = width;
-      path(points);
-      g.stroke();
-    };
-    if (kind === "block") {
-      g.fillStyle = color("shade");
-      path([frame.place(low, 0), frame.place(high, 0), frame.place(high, top), frame.place(low, top)]);
-      g.closePath();
-      g.fill();
-      g.stroke();
-      return;
-    }
-    const at = (x, i) => frame.place(x + this.amplification * frame.u[i], heights[i]);
-    const whole = (x) => heights.map((_, i) => at(x, i));
-    if (["frame", "fish_bone", "lumped"].includes(kind)) {
-      const b = 0.82 * Math.min(-low, high);
-      const [left, right] = [-b, b];
-      stroke(whole(left), 2.4);
-      stroke(whole(right), 2.4);
-      const width = heights.length > 25 ? 1 : 3.2;
-      for (let i = 1; i < heights.length; i++) stroke([at(left, i), at(right, i)], width);
-      if (view.leaning) {
-        // A column beside it, on a hinge, which the floors hold upright.
-        const beside = heights.map((z, i) => [1.2 * right + at(right, i)[0], z]);
-        stroke([[2.2 * right, 0], ...beside.slice(1)], 1.6);
-        for (let i = 1; i < heights.length; i++) stroke([at(right, i), beside[i]], 0.8);
-      }
-      return;
-    }
-    stroke(whole(0), ["cantilever", "beam", "properties"].includes(kind) ? 5 : 7);
-    if (kind === "cantilever") {
-      g.fillStyle = g.strokeStyle;
-      const [x, y] = to(at(0, heights.length - 1));
-      g.fillRect(x - 12, y - 7, 24, 14);
-    }
-  }
-
-  // Tendons reach from below the ground into the structure, the others from the ground to a bracket on the base.
-  #elements(g, frame, to, zoom) {
-    const { heights, elements } = this.view;
-    const top = heights[heights.length - 1];
-    for (const { kind, position, between, height, cosine } of elements) {
-      if (between || height) {
-        this.#attached(g, frame, to, { kind, between, height, cosine });
-        continue;
-      }
-      const tendon = isTendon(kind);
-      const sunk = frame.sprung ? this.depth / zoom : 0;
-      const from = to([position, -sunk - (tendon ? 0.02 * top : 0)]);
-      const end = to(frame.place(position, tendon ? 0.6 * top : Math.min(BRACKET / zoom, 0.4 * top)));
-      g.strokeStyle = g.fillStyle = color(colorOf(kind));
-      drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
-    }
-  }
-
-  // A brace between floors, or a tie to the ground beside the structure.
-  #attached(g, frame, to, { kind, between, height, cosine }) {
-    const { heights } = this.view;
-    const [low, high] = this.edges();
-    const bent = (x, z) => {
-      const i = Math.max(1, heights.findIndex((each) => each >= z * (1 - 1e-9)));
-      const share = (z - heights[i - 1]) / (heights[i] - heights[i - 1]);
-      const sway = frame.u[i - 1] + share * (frame.u[i] - frame.u[i - 1]);
-      return frame.place(x + this.amplification * sway, z);
-    };
-    const half = 0.6 * Math.min(-low, high);
-    const [side, lean] = [cosine < 0 ? 1 : -1, Math.sqrt(1 - cosine ** 2) / Math.abs(cosine)];
-    const anchor = lean > 0.05 ? [(side * height) / lean, 0] : [2.5 * side * Math.max(-low, high), height]; // or at an abutment
-    const ends = between ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)] : [anchor, bent(0, height)];
-    const [from, end] = ends.map(to);
-    g.strokeStyle = g.fillStyle = color(colorOf(kind));
-    drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
   }
 
   #blow(g, frame, to) {
@@ -252,11 +170,13 @@ class Stage {
     g.fillText(model.label, centre, 16, room);
     g.font = FONT;
     g.fillStyle = color(tone);
-    g.fillText(text, centre, this.height - 20, room);
+    // Handles lie under a base that has them, and its words above it.
+    const [beside, first, second] = this.placed ? [80, 33, 33] : [0, this.height - 20, this.height - 5];
+    g.fillText(text, centre - beside, first, room);
     g.fillStyle = color("muted");
     const { size, name } = unit("rotation");
     const rotation = `${written((frame.theta / size).toFixed(size < 1 ? 2 : 5))} ${name}`;
-    g.fillText(room > 100 ? `θ = ${rotation}` : rotation, centre, this.height - 5, room);
+    g.fillText(room > 100 ? `θ = ${rotation}` : rotation, centre + beside, second, room);
   }
 }
 
@@ -271,19 +191,15 @@ function stateOf(model, frame, time) {
   return [model.lifts ? t("in contact") : t("fixed base"), "muted"];
 }
 
-// Strokes across and along the line from one point to another.
-function drawBetween(g, parts, from, end) {
-  g.save();
-  g.translate(...from);
-  g.rotate(Math.atan2(end[1] - from[1], end[0] - from[0]) - Math.PI / 2);
-  for (const { points, width, fill } of parts) {
+function drawOutline(g, { strokes }, frame, path, tone) {
+  g.strokeStyle = color(tone);
+  g.fillStyle = color("shade");
+  for (const { points, width, filled } of strokes) {
     g.lineWidth = width;
-    g.beginPath();
-    for (const [u, v] of points) g.lineTo(-u, v);
-    if (fill) g.fill();
-    else g.stroke();
+    path(points.map(frame.at));
+    if (filled) g.fill();
+    g.stroke();
   }
-  g.restore();
 }
 
 function drawGround(g, left, right, ground) {
@@ -303,9 +219,9 @@ const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2
 const STEPS = 200; // of the arrow keys over the whole duration
 
 export class Player {
-  // `moved` is called with each time shown; `kinds` are those of elements; with `loop` it begins again at its end.
-  constructor(moved, kinds, { loop = false, ...size } = {}) {
-    Object.assign(this, { moved, kinds, loop, stage: new Stage(size), view: null, time: 0, amplification: 1, playing: null });
+  // `moved` is called with each time shown; with `loop` it begins again at its end.
+  constructor(moved, { elements, symbols }, { loop = false, ...size } = {}) {
+    Object.assign(this, { moved, kinds: elements, loop, stage: new Stage(symbols, size), view: null, time: 0, amplification: 1, playing: null });
     this.chosen = false; // whether the user chose the amplification
     this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, t("Play"));
     this.speed = h("select", { id: "speed", "aria-label": t("Speed") },
@@ -341,8 +257,8 @@ export class Player {
     }
     this.stage.view = { ...view, colors };
     if (this.stage.held && this.playing) return this.advance();
-    const shown = Object.keys(this.kinds).filter((kind) => view.elements.some((each) => each.kind === kind));
-    this.keys.replaceChildren(legend(shown.map((kind) => ({ label: t(this.kinds[kind].title), color: colorOf(kind) }))));
+    const shown = new Map(view.elements.map((each) => [each.kind, each.symbol]));
+    this.keys.replaceChildren(legend([...shown].map(([kind, symbol]) => ({ label: t(this.kinds[kind].title), color: symbol }))));
     this.scrub.max = view.end;
     this.scrub.step = Math.max(0.001, Number((view.end / 20000).toPrecision(1)));
     this.move(this.time);

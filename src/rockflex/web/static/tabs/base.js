@@ -2,7 +2,7 @@
 
 import { grounded, yields } from "../choices.js";
 import { clone, h, ink, svg } from "../dom.js";
-import { coil, colorOf, isTendon, nameOf, strokes } from "../drawing.js";
+import { nameOf, strokes } from "../drawing.js";
 import { folded, select, tableField, trouble } from "../form.js";
 import { t } from "../texts.js";
 
@@ -23,9 +23,9 @@ export function base(about, view) {
   },
   svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: ink("control"), "stroke-dasharray": "4 3" }),
   svg("path", { d: hatch(), stroke: ink("muted"), fill: "none" }),
-  ...elements.flatMap((each) => drawn(each, x(each.position))),
+  ...elements.flatMap((each) => drawn(about.symbols, each, x(each.position))),
   svg("line", { x1: left, x2: right, y1: BASE, y2: BASE, stroke: ink("structure"), "stroke-width": 5 }),
-  ...springs.flatMap((place) => sprung(x(place), springs.length)),
+  ...springs.flatMap((place) => sprung(about.symbols.spring, x(place), springs.length)),
   ...(springs.length ? [] : [left, right]).map((at) => svg("path", { d: `M${at} ${BASE}l-7 ${GROUND - BASE}h14z`, fill: ink("structure") })),
   ...numbers(elements.map((each) => x(each.position))));
 }
@@ -36,20 +36,19 @@ function hatch() {
   return path;
 }
 
-function sprung(at, count) {
-  return coil(GROUND - BASE, count > 4 ? 5 : 7).map(({ points, width }) => svg("polyline", {
-    points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(GROUND - v).toFixed(1)}`).join(" "),
-    fill: "none", stroke: ink("soil"), "stroke-width": width,
-  }));
+function sprung(symbol, at, count) {
+  return lines(symbol, at, GROUND, GROUND - BASE, "soil", count > 4 ? 5 : 7);
 }
 
-function drawn({ kind }, at) {
-  const tone = ink(colorOf(kind));
-  const tendon = isTendon(kind);
-  const [from, length] = tendon ? [GROUND + 10, GROUND + 6] : [GROUND, GROUND - BASE];
-  return strokes(kind, length).map(({ points, width, fill }) => svg("polyline", {
+function drawn(symbols, { symbol }, at) {
+  const below = symbol === "tendons" ? 10 : 0;
+  return lines(symbols[symbol], at, GROUND + below, below ? GROUND + 6 : GROUND - BASE, symbol);
+}
+
+function lines(symbol, at, from, length, tone, half) {
+  return strokes(symbol, length, half).map(({ points, width, filled }) => svg("polyline", {
     points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(from - v).toFixed(1)}`).join(" "),
-    fill: fill ? tone : "none", stroke: tone, "stroke-width": tendon ? 2 : width,
+    fill: filled ? ink(tone) : "none", stroke: ink(tone), "stroke-width": width,
   }));
 }
 

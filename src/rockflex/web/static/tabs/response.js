@@ -44,7 +44,7 @@ const PATIENCE = 1500; // ms before the page says that it is computing
 export default function responseTab(app) {
   let view = null;
   let ghosts = []; // the responses of kept alternatives
-  const player = new Player(follow, app.about.elements);
+  const player = new Player(follow, app.about);
   const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const options = runs(app, () => view?.suggested_yield);

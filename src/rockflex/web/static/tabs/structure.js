@@ -176,7 +176,7 @@ export default function structureTab(app) {
     if (!fast) results.classList.add("stale");
     const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
     if (!answer) return;
-    shown.set(answer.run, asked);
+    shown.set({ ...answer, ...answer.run }, asked);
     if (fast) return;
     results.classList.remove("stale");
     view = answer;
