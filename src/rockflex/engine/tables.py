@@ -82,7 +82,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     C = rows[..., :n]
 
     turn = spectral_radius_bound(A * h)
-    halvings, squared = halvings_of(turn, LONGEST), halvings_of(turn, 1.0)
+    halvings, squared = halvings_of(turn, np.array([[LONGEST], [1.0]]))
     splits = [split_fast_modes(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
     most = max((len(each.parts) for each in splits if each is not None), default=0)
     slow, driven = A.copy(), f.copy()
@@ -108,8 +108,10 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         step[...], (bend, sway, jolt) = mirror.step, mirror.bounds
         step[..., -1] *= sign
     else:
-        for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
-            some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
+        kinds = {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}
+        for kind in kinds:
+            alike = (squared == kind[0]) & (fine == kind[1]) & (parted == kind[2])
+            some: Any = np.flatnonzero(alike) if len(kinds) > 1 else slice(None)
             changes = exponentials_less_identity(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
             whole = changes[0][:, :n]
             step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
@@ -188,10 +190,8 @@ def tables_of_nonlinear_phase(phase: NonlinearPhase) -> Tables:
 def shift_of(rates: Array) -> int:
     """The number of first states whose rates are as many states after them, as positions before their velocities."""
     _, n, columns = rates.shape
-    for shift in range(n // 2, 0, -1):
-        if (rates[:, :shift] == np.eye(shift, columns, shift)).all():
-            return shift
-    return 0
+    shift = int(rates[0, 0, : n // 2 + 1].argmax()) if n else 0  # the first rate could be no other state
+    return shift if (rates[:, :shift] == np.eye(shift, columns, shift)).all() else 0
 
 
 class Split(NamedTuple):
@@ -247,10 +247,10 @@ def state_changes_at_samples(step: Array) -> Array:
     """The changes of the states after 0, 1, .. samples, from y, the accelerations at the samples, and 1."""
     S, n, _ = step.shape
     found = np.zeros((S, AHEAD + 1, n, n + AHEAD + 2))
-    direct = step[..., [*range(n), -1]]
     for k in range(AHEAD):
         change = found[:, k] + step[..., :n] @ found[:, k]
-        change[..., [*range(n), -1]] += direct
+        change[..., :n] += step[..., :n]
+        change[..., -1] += step[..., -1]
         change[..., n + k : n + k + 2] += step[..., n : n + 2]
         found[:, k + 1] = change
     return found
@@ -259,10 +259,10 @@ def state_changes_at_samples(step: Array) -> Array:
 def rows_at_samples(rows: Array, changes: Array, first: int) -> Array:
     """The rows at the samples from the first on, one sample after another, from the same."""
     S, K, n, columns = changes.shape
-    later, places = np.arange(K - first), n + np.arange(first, K)
     seen = by_rows(rows[:, None, :, :n], changes[:, first:])
     seen[..., :n] += rows[:, None, :, :n]
-    seen[:, later, :, places] += rows[..., n]
+    of_acceleration = np.einsum("skrk->skr", seen[..., n + first : n + K])  # a view
+    of_acceleration += rows[:, None, :, n]
     seen[..., -1] += rows[:, None, :, n + 1]
     return padded(seen.reshape(S, -1, columns))
 
@@ -278,7 +278,7 @@ def derivative_bound_factors(
     those of A in h/2, h/4, .. For several inputs, whose f has a last axis more, all variations come before the slopes.
     """
     S, rows, n = C.shape
-    ends = np.cumsum((rows, rows, rows - m))
+    counts = rows, rows, rows - m
     f = f.reshape(S, n, -1)
     if rows == 0:
         empty = np.zeros((S, 0, n + 2 * f.shape[2]))
@@ -287,10 +287,9 @@ def derivative_bound_factors(
     before = np.concatenate((C, once, by_rows(once[:, m:], A)), axis=1)
     most, direct = most_of(by_rows(before, A), A, changes, h), np.abs(by_rows(before, f))
     found = np.concatenate((most, by_rows(most, np.abs(f)), direct), axis=2)
-    parts = np.split(found, ends[:2], axis=1)
-    scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
-    bend, sway, jolt = (np.where(part < VAGUE, part, VAGUE) for part in scaled)  # NaN is vague, too
-    return bend, sway, jolt
+    found *= np.repeat((h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), counts)[:, None]
+    found = np.where(found < VAGUE, found, VAGUE)  # NaN is vague, too
+    return found[:, :rows], found[:, rows : 2 * rows], found[:, 2 * rows :]
 
 
 def most_of(rows: Array, A: Array, changes: list[Array], h: float) -> Array:
@@ -318,10 +317,9 @@ def growth(G: Array, changes: list[Array]) -> Array:
         grid = np.concatenate((grid, grid + grid @ step), axis=1)
     most, between = np.abs(grid).reshape(S, -1, n, n).max(axis=1), np.abs(G) / 2.0 ** (len(changes) - 1)
     found, turn = most.copy(), spectral_radius_bound(between)
-    near, far = np.flatnonzero(turn <= 0.5), np.flatnonzero(~(turn <= 0.5))
-    if near.size:
-        found[near] = most[near] @ np.linalg.inv(np.eye(n) - between[near])
-    for each in far:
+    near = turn <= 0.5
+    found[near] = most[near] @ np.linalg.inv(np.eye(n) - between[near])
+    for each in np.flatnonzero(~near):
         found[each] += (
             most[each] @ exponentials_less_identity(between[None, each], int(halvings_of(turn[each], 1.0)) + 1)[0][0]
         )
@@ -383,6 +381,8 @@ def jump_table(jump: Array, most: int) -> Array:
 def padded(table: NDArray[Any]) -> NDArray[Any]:
     """The tables with zeros below, to a multiple of 8 rows."""
     *stack, rows, columns = table.shape
+    if rows == up8(rows):
+        return table
     full = np.zeros((*stack, up8(rows), columns), table.dtype)
     full[..., :rows, :] = table
     return full
