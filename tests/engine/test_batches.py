@@ -195,10 +195,11 @@ def test_phases_share_what_they_can():
         LinearPhase(A, f, c, pushed, none, none),
         LinearPhase(A, -f, c, C, none, none),
         LinearPhase(A, f, 2.0 * c, C, none, none),
+        LinearPhase(A, f, np.array([[0.0, 1.0, 0.0, 0.0]]), C, none, none),
     ):
         for shared, alone in zip(tables_of(phase, 0.02, motions), tables_of(phase, 0.02, []), strict=True):
             assert np.array_equal(shared, alone)
-    assert len(motions) == 3  # of A and f, A and -f, and the softer one
+    assert len(motions) == 4  # of A and f, the softer one, A and -f, and fewer constants
 
 
 @pytest.mark.parametrize("history", [False, True])

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Integers
+from rockflex._arrays import Array, Bools, Integers
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError, System, up8
 
 AHEAD, BLOCK = 4, 16  # as in march.h
@@ -18,7 +18,8 @@ SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
-KEPT = 2**18  # numbers in the grids of earlier phases that a run keeps, but for its last two phases
+PLACES = 8  # of a block whose matrices are kept: with more, these take longer than the rows
+KEPT = 2**16  # numbers in the grids of earlier phases that a run keeps, but for its last two phases
 # Two threads that prepare at once pass the interpreter's lock to and fro, in every second call of NumPy.
 PREPARING = RLock()
 AT_ONCE = 2**14  # numbers that fit into the cache
@@ -59,13 +60,13 @@ class Reach(NamedTuple):
 class Motion(NamedTuple):
     """What phases share that differ in constants and rows alone, as where a bar yields one way or the other."""
 
-    key: bytes  # A and f
+    key: bytes  # A, f, and which rates have a constant
     halvings: Integers
     splits: list["Split | None"]
     slow: Array  # A and f without fast modes
     driven: Array
     free: Array  # change of the states in a step, from themselves and the accelerations at its ends
-    pushed: Array  # and from their constant rates
+    pushed: Array  # and from the constants of their rates
     reach: Reach
     C: Array  # of outputs and conditions of the last phase
     bounds: tuple[Array, Array, Array]  # of them: bend, sway and jolt
@@ -77,9 +78,9 @@ class Motion(NamedTuple):
         return derivative_bound_factors(self.slow, self.driven, C, m, self.reach, h)
 
 
-def motion_of(A: Array, f: Array, h: float, key: bytes) -> Motion:
-    """Compute what does not depend on constants and rows."""
-    S, n = f.shape
+def motion_of(A: Array, f: Array, steady: Bools, h: float, key: bytes) -> Motion:
+    """Compute what does not depend on rows, and of constants only on where there are `steady` ones."""
+    (S, n), (places,) = f.shape, np.nonzero(steady)
     turn = spectral_radius_bound(A * h)
     halvings, squared = halvings_of(turn, np.array([[LONGEST], [1.0]]))
     splits = [split_fast_modes(A[place], f[place], h) if turn[place] > FAST else None for place in range(S)]
@@ -89,9 +90,9 @@ def motion_of(A: Array, f: Array, h: float, key: bytes) -> Motion:
             slow[place], driven[place] = each.slow, each.driven
     parted = np.array([each is not None for each in splits])
     fine = np.minimum(halvings_of(spectral_radius_bound(np.abs(slow) * h), 1.0), FINEST)
-    G = np.zeros((S, n + 1, 2 * n + 2))  # of y and a; their columns, a rise of a, and constant rates
-    G[:, :n, :n], G[:, :n, n], G[:, n, n + 1], G[:, :n, n + 2 :] = A * h, f * h, 1.0, h * np.eye(n)
-    whole, found = np.empty((S, n, 2 * n + 2)), list[tuple[Any, Reach]]()
+    G = np.zeros((S, n + 1, n + 2 + places.size))  # of y and a; their columns, a rise of a, and constant rates
+    G[:, :n, :n], G[:, :n, n], G[:, n, n + 1], G[:, places, n + 2 + np.arange(places.size)] = A * h, f * h, 1.0, h
+    whole, found = np.empty((S, n, G.shape[2])), list[tuple[Any, Reach]]()
     kinds = {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}
     for kind in kinds:
         alike = (squared == kind[0]) & (fine == kind[1]) & (parted == kind[2])
@@ -112,8 +113,9 @@ def motion_of(A: Array, f: Array, h: float, key: bytes) -> Motion:
                 into[some] = part
     free = whole[..., : n + 2].copy()
     free[..., n] -= free[..., n + 1]
-    none = np.zeros((S, 0, n))
-    return Motion(key, halvings, splits, slow, driven, free, whole[..., n + 2 :], reach, none, (none, none, none))
+    by_constants, none = np.zeros((S, n, n)), np.zeros((S, 0, n + 2))
+    by_constants[..., places] = whole[..., n + 2 :]
+    return Motion(key, halvings, splits, slow, driven, free, by_constants, reach, none[..., :n], (none, none, none))
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -131,8 +133,9 @@ def tables_of(phase: LinearPhase, h: float, motions: list[Motion]) -> Tables:
         row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
     C = rows[..., :n]
 
-    key = A.tobytes() + f.tobytes()
-    motion = next((each for each in motions if each.key == key), None) or motion_of(A, f, h, key)
+    steady = c.any(axis=0)
+    key = A.tobytes() + f.tobytes() + steady.tobytes()
+    motion = next((each for each in motions if each.key == key), None) or motion_of(A, f, steady, h, key)
     bounds = motion.bounds_of(C, m, h)
     others = [each for each in motions if each.key != key]
     motions[:] = [*others, motion._replace(C=C, bounds=bounds)][-max(2, KEPT // max(1, motion.reach.grid.size)) :]
@@ -232,10 +235,10 @@ class Split(NamedTuple):
     parts: Array  # real and imaginary parts of all w from y', (F, n)
     push: Array  # by how much w may grow within a block, for the variation of a and for |a'|, (F, 2)
     pushed: Array  # |W f|
-    root: Array  # λ
+    root: NDArray[Any]  # λ
     both: Array  # 2 of a pair of conjugate modes, 1 of a mode that does not oscillate
-    V: Array
-    W: Array
+    V: NDArray[Any]
+    W: NDArray[Any]
 
 
 def split_fast_modes(A: Array, f: Array, h: float) -> Split | None:
@@ -343,8 +346,8 @@ def derivative_bound_factors(
 def reach_of(A: Array, changes: list[Array], h: float) -> Reach:
     """Compute the places of a block from the changes in h/2, h/4, .."""
     S, n, _ = A.shape
-    grid, leap, places = np.tile(np.eye(n), (S, 1, 1, 1)), changes[0], 1
-    while places < 2 * BLOCK and places * n * n <= AT_ONCE:
+    grid, leap, places = np.eye(n)[None, None].repeat(S, axis=0), changes[0], 1
+    while places < PLACES and places * n * n <= AT_ONCE:
         grid = np.concatenate((grid, grid + grid @ leap[:, None]), axis=1)
         leap, places = 2.0 * leap + leap @ leap, 2 * places
     return Reach(np.ascontiguousarray(grid.swapaxes(1, 2)), leap, growth(0.5 * h * A, changes))
@@ -354,7 +357,7 @@ def most_of(rows: Array, reach: Reach) -> Array:
     """Bounds of the entries of rows · e^{At} within a block."""
     (S, n, places, _), count, here = reach.grid.shape, rows.shape[1], padded(rows)
     grid, most = reach.grid.reshape(S, n, places * n), np.abs(here)
-    some = max(8, AT_ONCE // (places * n) // 8 * 8)
+    some = max(8, AT_ONCE // (S * places * n) // 8 * 8)
     for passed in range(0, 2 * BLOCK, places):
         here = here + here @ reach.leap if passed else here
         for first in range(0, here.shape[1], some):
@@ -371,7 +374,7 @@ def growth(G: Array, changes: list[Array]) -> Array:
     Between the places of a grid of 1/2^k it is at most e^B with B = |G|/2^k, itself at most 1 + B + B² + ...
     """
     S, n, _ = G.shape
-    grid = np.tile(np.eye(n), (S, 1, 1))
+    grid = np.eye(n)[None].repeat(S, axis=0)
     for step in reversed(changes[1:]):
         grid = np.concatenate((grid, grid + grid @ step), axis=1)
     most, between = np.abs(grid).reshape(S, -1, n, n).max(axis=1), np.abs(G) / 2.0 ** (len(changes) - 1)
@@ -385,9 +388,9 @@ def growth(G: Array, changes: list[Array]) -> Array:
     return found
 
 
-def halvings_of(turn: Any, longest: float) -> Any:
+def halvings_of(turn: Any, longest: float | Array) -> Any:
     """How often a step must be halved so that no mode turns by more than `longest`, in rad."""
-    return np.maximum(0, np.ceil(np.log2(np.clip(turn / longest, 1e-300, 1e300)))).astype(int)
+    return np.ceil(np.log2(np.clip(turn / longest, 1.0, 1e300))).astype(int)
 
 
 def spectral_radius_bound(A: Array) -> Array:
