@@ -322,7 +322,7 @@ class System:
         listed: Any = found.events
         if not isinstance(listed, tuple | list):
             raise InputError(f"{place}events must be a tuple, but {listed!r} was given.")
-        events = tuple(_checked(place, event, n, self.count) for event in found.events)
+        events = _checked_events(place, found.events, n, self.count)
         if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
         return replace(found, events=events, **arrays)
@@ -393,35 +393,62 @@ def _of(part: Any, place: int, names: dict[str, int]) -> Any:
     return replace(part, **found)
 
 
-def _checked(place: str, event: Any, n: int, count: int) -> Event:
-    if not isinstance(event, Event):
-        raise InputError(f"{place}events must be of the class Event, but {event!r} was given.")
-    place += f"event {event.name!r}: "
-    found = _stacked(place, event, EVENT_NUMBERS, n, count)
-    if not (found["scale"] > 0.0).all():
-        raise InputError(f"{place}scale must be positive, but {event.scale} was given.")
-    rest: Any = event.rest
-    if rest is not None and not isinstance(rest, Rest):
-        raise InputError(f"{place}rest must be of the class Rest, but {rest!r} was given.")
-    if rest is not None and callable(event.jump):
-        raise InputError(f"{place}a jump that is a function says itself what follows, so that there can be no rest.")
-    if (callable(event.jump) or isinstance(event.jump, Jump)) and count > 1:
-        raise InputError(f"{place}a stack of systems can have no jump that is a function.")
-    if rest is not None and isinstance(event.jump, Jump):
-        raise InputError(f"{place}a compiled jump says itself what follows, so that there can be no rest.")
-    if rest is not None:
-        rest = replace(rest, **_stacked(place + "rest: ", rest, REST_NUMBERS, n, count))
-    return replace(event, rest=rest, **found)
+def _checked_events(place: str, events: Sequence[Any], n: int, count: int) -> tuple[Event, ...]:
+    for event in events:
+        if not isinstance(event, Event):
+            raise InputError(f"{place}events must be of the class Event, but {event!r} was given.")
+    places = [f"{place}event {event.name!r}: " for event in events]
+    found = _stacked(places, events, EVENT_NUMBERS, n, count)
+    for here, event, numbers in zip(places, events, found, strict=True):
+        if not (numbers["scale"] > 0.0).all():
+            raise InputError(f"{here}scale must be positive, but {event.scale} was given.")
+        if (callable(event.jump) or isinstance(event.jump, Jump)) and count > 1:
+            raise InputError(f"{here}a stack of systems can have no jump that is a function.")
+        rest: Any = event.rest
+        if rest is None:
+            continue
+        if not isinstance(rest, Rest):
+            raise InputError(f"{here}rest must be of the class Rest, but {rest!r} was given.")
+        if callable(event.jump):
+            raise InputError(f"{here}a jump that is a function says itself what follows, so that there can be no rest.")
+        if isinstance(event.jump, Jump):
+            raise InputError(f"{here}a compiled jump says itself what follows, so that there can be no rest.")
+        numbers["rest"] = _changed(rest, _stacked([here + "rest: "], [rest], REST_NUMBERS, n, count)[0])
+    return tuple(_changed(event, numbers) for event, numbers in zip(events, found, strict=True))
 
 
-def _stacked(place: str, part: Any, names: dict[str, int], n: int, count: int) -> dict[str, Any]:
-    found = {name: getattr(part, name) for name in names}
-    return {
-        name: each
-        if (each is None and name in OPTIONAL) or callable(each) or isinstance(each, Jump)
-        else stacked_array(place + name, each, (n,) * names[name], count)
-        for name, each in found.items()
-    }
+def _changed(part: Any, numbers: dict[str, Any]) -> Any:
+    """As `dataclasses.replace`, which takes longer than all else that is done to an event."""
+    found = object.__new__(type(part))
+    vars(found).update(vars(part), **numbers)
+    return found
+
+
+def _stacked(
+    places: Sequence[str], parts: Sequence[Any], names: dict[str, int], n: int, count: int
+) -> list[dict[str, Any]]:
+    """The numbers of every part, with a first axis for the systems."""
+    found = [dict[str, Any]() for _ in parts]
+    for name, axes in names.items():
+        given, shape = [getattr(part, name) for part in parts], (n,) * axes
+        alike = _alike(given, shape) if count == 1 else None
+        for k, (place, each) in enumerate(zip(places, given, strict=True)):
+            if alike is not None:
+                found[k][name] = alike[k : k + 1]
+            elif (each is None and name in OPTIONAL) or callable(each) or isinstance(each, Jump):
+                found[k][name] = each
+            else:
+                found[k][name] = stacked_array(place + name, each, shape, count)
+    return found
+
+
+def _alike(values: list[Any], shape: tuple[int, ...]) -> Array | None:
+    """Copies of all in one array; None if one is of another type or shape, or not finite."""
+    kinds = {type(each) for each in values}
+    if kinds != {np.ndarray if shape else float} or (shape and {each.shape for each in values} != {shape}):
+        return None
+    found = np.array(values)
+    return found if found.dtype == float and np.isfinite(found).all() else None
 
 
 def up8(count: int) -> int:
@@ -432,7 +459,7 @@ def up8(count: int) -> int:
 def stacked_array(name: str, values: Any, shape: tuple[int, ...], count: int, *, finite: bool = True) -> Array:
     """Return a copy as `array` does, with a first axis for the systems of a stack, for all of which it may be given."""
     if type(values) is float and not shape and isfinite(values):
-        return np.full(count, values)
+        return np.array([values] * count)
     if np.ndim(values) == len(shape) + 1:
         return array(name, values, (count, *shape), finite=finite)
     found = array(name, values, shape, finite=finite)[None]

@@ -72,9 +72,9 @@ def accelerations_of(model: RockingModel, key: Key) -> Array:
     rows[:n] += attached
     forces = pulls - bordered_system.leverage @ rows[:n]
     rows[:n, -2] = -1.0
-    places = layout.rotation + 2 * np.arange(b)
-    forces[:, places] -= bordered_system.stiffness
-    forces[:, places + 1] -= bordered_system.damping
+    of_base = forces[:, layout.rotation : layout.rotation + 2 * b]
+    of_base[:, ::2] -= bordered_system.stiffness
+    of_base[:, 1::2] -= bordered_system.damping
     forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.recall
     forces[:, -2] += bordered_system.drive
     forces[:, -1] += bordered_system.constant

@@ -1,6 +1,7 @@
 """The elements of a base together: their branches in a phase, the forces on the base, and what ends the phase."""
 
 import math
+from itertools import accumulate
 
 import numpy as np
 
@@ -102,7 +103,7 @@ def friction_damper_shares(properties: RockingProperties, elements: tuple[Elemen
 
 def internal_places(elements: tuple[Element, ...]) -> dict[int, int]:
     """Return the index of the first internal variable of each element that has some, by its place."""
-    ends = np.cumsum([each.n_internal for each in elements], dtype=int).tolist()
+    ends = accumulate(each.n_internal for each in elements)
     return {
         place: end - each.n_internal
         for place, (each, end) in enumerate(zip(elements, ends, strict=True))
@@ -125,8 +126,10 @@ def base_equations_of(
     side, known, count = key[0], internal_places(elements), internal_count(elements)
     total = weight_equations(properties, side, count, gravity)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
-        r, pull = arm_of_element(properties, each, side), each.pull(branch)
-        recall = np.zeros(count)
+        r = arm_of_element(properties, each, side)
+        if r == 0.0:
+            continue
+        pull, recall = each.pull(branch), np.zeros(count)
         if place in known:
             recall[known[place]] = -side * pull.recall * r
         total = total + BaseEquations.on_rotation(

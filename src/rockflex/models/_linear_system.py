@@ -110,9 +110,7 @@ class LinearSystemBase:
 
     def stretch_in(self, place: int, key: Key) -> Array:
         """The whole stretch δ + e_0 of a bar: a row."""
-        row = self.stretch(place, key).copy()
-        row[-1] += self.model.elements[place].stretches or 0.0
-        return row
+        return self._stretches(place, key[0])[2]
 
     def blank(self) -> Array:
         """A row of zeros."""
@@ -195,11 +193,12 @@ class LinearSystemBase:
         return self._stretches(place, key[0])[1]
 
     def _stretches(self, place: int, side: int) -> Array:
-        """The elongation of an element and its rate: read-only rows."""
+        """The elongation of an element, its rate, and the whole stretch: read-only rows."""
         known = self._known_stretches.get((place, side))
         if known is None:
             row = self.model.stretch(place, side)
-            known = np.array([row, rate_of_elongation_row(row, self.model.layout)])[:, self.columns]
+            known = np.array([row, rate_of_elongation_row(row, self.model.layout), row])[:, self.columns]
+            known[2, -1] += self.model.elements[place].stretches or 0.0
             known.setflags(write=False)
             self._known_stretches[place, side] = known
         return known

@@ -243,9 +243,9 @@ class SpringModel(RockingModel):
     def _add_to(self, equations: BaseEquations, freedom: int, force: Array) -> None:
         """Add a force on one degree of freedom of the base, a row over its state and 1."""
         layout = self.layout
-        places = layout.rotation + 2 * np.arange(layout.freedoms)
-        equations.stiffness[freedom] -= force[places]
-        equations.damping[freedom] -= force[places + 1]
+        motion = force[layout.rotation : layout.rotation + 2 * layout.freedoms]
+        equations.stiffness[freedom] -= motion[::2]
+        equations.damping[freedom] -= motion[1::2]
         equations.constant[freedom] += force[-1]
         equations.recall[freedom] += force[layout.memory : layout.memory + layout.n_internal]
 
