@@ -9,6 +9,7 @@ from string import Formatter
 from typing import get_args
 
 import numpy as np
+import pandas as pd
 import pytest
 from jinja2.ext import extract_from_ast
 from scipy import constants
@@ -36,6 +37,8 @@ from rockflex.report.run._sheet import TEMPLATES
 from rockflex.response import DEMANDS, STATISTICS
 from rockflex.response._limit_checks import KINDS, SOURCES
 
+STRIPES = pd.DataFrame({"level": [0.2] * 10 + [0.4] * 10, "max_rotation": [0.001] * 8 + [0.01] * 12})
+STRIPES = STRIPES.assign(structure="a", model="MDOF-S", status="rocking", nominal_overturning=False)
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 OTHERS = [name for name in get_args(Language) if name != "en"]
 SOURCE = TEMPLATES.parents[2]
@@ -79,7 +82,7 @@ def labels():
     yield from (text for each in _QUANTITIES.values() for text in (each.symbol, each.words))
     yield from (
         *FEW_RUNS,
-        *PARTS,
+        *(f"{part}: {{note}}" for part in PARTS),
         ONE_RECORDING,
         *_SPECTRA.values(),
         *(words for _, words, _ in _CLOUD_QUANTITIES.values()),
@@ -197,6 +200,42 @@ def test_figures_follow_the_language_the_units_and_the_sign():
     assert not any("." in text for axes in figure.axes for text in labels_of(axes))
     assert [axes.get_xlabel() for axes in loops.axes[1:]] == ["δ [in]"] * (len(loops.axes) - 1)
     assert not any("," in text for text in labels_of(usual.axes[0]))
+
+
+def test_figures_of_motions_and_shapes_have_the_units_and_commas_in_mathematics():
+    motion, inch = rf.ricker_pulse(4.0, 0.6), constants.inch
+    with rf.figure_style(units="kip-in", language="de"):
+        drawn, modes = rf.plot_motion(motion), rf.plot_mode_shapes(FRAME)
+        fragility = rf.plot_stripes(STRIPES, 0.005)
+    acceleration, _, velocity, _ = drawn.axes
+    assert (acceleration.get_ylabel(), velocity.get_ylabel()) == ("$a$ [g]", "$v$ [in/s]")
+    np.testing.assert_allclose(acceleration.get_lines()[0].get_ydata() * 9.81, motion.acceleration, rtol=1e-12)
+    np.testing.assert_allclose(velocity.get_lines()[0].get_ydata() * inch, motion.velocity, rtol=1e-12)
+    assert modes.axes[0].get_ylabel() == "Höhe [in]"
+    np.testing.assert_allclose(modes.axes[0].get_lines()[1].get_ydata()[1:] * inch, FRAME.modal().heights, rtol=1e-12)
+    assert "0{,}005" in fragility.axes[0].get_ylabel()
+
+
+def test_a_design_has_its_widths_in_the_units():
+    rows = {"half_width": [1.0, 2.0], "aspect_ratio": [8.0, 4.0], "probability": [0.6, 0.2], "limit": [np.pi / 2] * 2}
+    same = {"model": "2DOF-S", "tendon": "no tendon", "prestress_ratio": 0.0, "stiffness_ratio": 0.0}
+    table = pd.DataFrame(rows | {"low": np.nan, "high": np.nan, "state": "overturning", "note": ""} | same)
+    with rf.figure_style(units="kip-in", language="es"):
+        axes = rf.plot_design(table, 0.4).axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("semiancho $B$ [in]", "P(vuelco)")
+    np.testing.assert_allclose(axes.get_lines()[0].get_xdata() * constants.inch, rows["half_width"], rtol=1e-12)
+    assert list(table["half_width"]) == rows["half_width"]
+    met = rf.smallest_width(table, 0.4)["half_width"].iloc[0]
+    assert f"B = {met / constants.inch:.3g} in".replace(".", ",") in [text.get_text() for text in axes.texts]
+
+
+def test_notes_and_reasons_follow_the_language_and_its_sign():
+    with use_language("de"):
+        reason = rf.adequacy(FRAME.rocking()).reason
+        notes = rf.fit_outcomes([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.0, 0.0, 0.01, 0.0, 0.02, 0.05], [False] * 6).notes
+    assert "Fußquerkraft" in reason
+    assert not re.search(r"\d\.\d", reason)
+    assert any(note.kind == "overturning" and note.startswith("Umkippen: keine von 6") for note in notes)
 
 
 @pytest.mark.parametrize(("option", "value"), [("language", "la"), ("units", "kips"), ("decimal", ";")])

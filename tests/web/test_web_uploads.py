@@ -380,6 +380,13 @@ def test_a_folder_is_what_the_library_surveys(client, folder, archive) -> None:
     assert json.loads(client.request(f"/api/folder/{found['folder']}")[2]) == found
 
 
+def test_a_folder_is_reported_in_the_language_of_the_page(client) -> None:
+    _, found = give(client, body_of(GIVEN), "?language=de")
+    reasons = {entry["file"]: entry["reason"] for entry in found["entries"]}
+    assert reasons["RSN7_TEST-UP.AT2"] == "vertikale Komponente, mit den horizontalen verwendbar"
+    assert give(client, body_of(GIVEN), "?language=la")[0] == 422
+
+
 def test_a_record_of_it_is_simulated_with_and_without_its_vertical_component(client, folder, frame) -> None:
     _, found = give(client, body_of(GIVEN))
     choice = {"source": "folder", "folder": found["folder"], "given": "RSN7_TEST000"}

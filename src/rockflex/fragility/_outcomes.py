@@ -421,7 +421,7 @@ class _OutcomePartFits(NamedTuple):
         return None if self.recordings is None else self.recordings.some(chosen)
 
     def note(self, part: str, text: object) -> None:
-        self.notes.append(OutcomeNote(f"{translated(part)}: {text}", part))
+        self.notes.append(OutcomeNote(translated(f"{part}: {{note}}", note=text), part))
 
     def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, _Part]:
         """The curve of an outcome of some of the runs."""

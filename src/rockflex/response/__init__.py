@@ -40,6 +40,7 @@ from rockflex.response._response import (
     leaves_range,
     warnings_of_energy,
     warnings_of_response,
+    warnings_of_run,
 )
 from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
@@ -101,5 +102,6 @@ __all__ = [
     "tracked_quantities",
     "warnings_of_energy",
     "warnings_of_response",
+    "warnings_of_run",
     "weight_resistance",
 ]

@@ -14,6 +14,7 @@ from rockflex._files import checked_file_path
 from rockflex._html import HtmlTable
 from rockflex._language import translated
 from rockflex._shown import number_with_noun, shown
+from rockflex._units import UnitSystem
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
@@ -26,16 +27,24 @@ FALLEN = 1.57  # rad: an overturned run has a status of its own
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
 
-def warnings_of_response(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
+SI = UnitSystem("SI")
+
+
+def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem = SI) -> tuple[str, ...]:
     """Return one text per warning; `peaks` are those of a `Response` by name."""
+
+    def text(name: str, quantity: str) -> str:
+        size, unit = units.of(quantity)
+        return f"{peaks[name] / size:.4g} {unit}"
+
     found: list[str] = []
     if peaks["min_vertical_reaction"] < 0.0:
         found.append(
             translated(
-                "The vertical reaction falls to {force:.4g} N at {time:.4g} s: {model} pulls the base down there, "
+                "The vertical reaction falls to {force} at {time:.4g} s: {model} pulls the base down there, "
                 "which no ground can. The pivot would lift, and what follows is to be read with care. Give simulate a "
                 "Ground with springs, on which the base can leave the ground.",
-                force=peaks["min_vertical_reaction"],
+                force=text("min_vertical_reaction", "force"),
                 time=peaks["time_of_min_vertical_reaction"],
                 model=model,
             )
@@ -51,10 +60,10 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
         found.append(
             translated(
-                "θ reaches {rotation:.4g} rad, {ratio:.3g} times the rotation α at which the static moment vanishes. "
+                "θ reaches {rotation}, {ratio:.3g} times the rotation α at which the static moment vanishes. "
                 "{model} is for small rotations: whether the structure overturns is to be decided by a complete model "
                 "on rigid ground, such as {complete}.",
-                rotation=peaks["max_rotation"],
+                rotation=text("max_rotation", "rotation"),
                 ratio=peaks["balance_ratio"],
                 model=model,
                 complete=complete_model_label(model),
@@ -77,6 +86,15 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
             rounding=BALANCED,
         ),
     )
+
+
+def warnings_of_run(run: "Response", units: UnitSystem = SI) -> tuple[str, ...]:
+    """Return the warnings of the peaks and, of a run with a history, of its energies."""
+    found = warnings_of_response(run.model, run.peaks(), units)
+    try:
+        return found if run.history is None else (*found, *warnings_of_energy(run.history.energy.closing_error))
+    except InputError:  # too fast for the sampling: no energies
+        return found
 
 
 def complete_model_label(model: str) -> str:
@@ -340,13 +358,7 @@ class Response(HtmlTable, Value):
 
         A response with a history also warns if its energy balance does not close to 1e-6; `energy` is computed for it.
         """
-        return (*warnings_of_response(self.model, self.peaks()), *self._warnings_of_energy())
-
-    def _warnings_of_energy(self) -> tuple[str, ...]:
-        try:
-            return () if self.history is None else warnings_of_energy(self.history.energy.closing_error)
-        except InputError:  # too fast for the sampling: no energies
-            return ()
+        return warnings_of_run(self)
 
     @property
     def max_ductility(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
+from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -172,6 +173,8 @@ def response_view(
     p = built.properties
     drawn = chosen_element(element, p)
     energy, curves = _energy_view(motion, main, state), [response_curves(built, response, drawn) for response in found]
+    for each, run in zip(curves, found, strict=True):
+        each["warnings"] = warnings_of_response(run.model, run.peaks(), UnitSystem(state.units))
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
@@ -225,7 +228,6 @@ def response_curves(
         "label": response.model,
         "status": response.status,
         "peaks": response.peaks(),
-        "warnings": warnings_of_response(response.model, response.peaks()),  # `response_view` adds one of energies
         "lifts": history.model.lifts,
         "fall_time": _overturning_time(history),
         "impact_times": history.impact_times[:MAX_EVENT_NODES],

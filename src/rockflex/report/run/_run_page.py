@@ -32,7 +32,7 @@ from rockflex.report.run._sheet import (
     line_count_of_table,
     line_count_of_text,
 )
-from rockflex.response import CheckLimits, Response, check, friction_coefficient, warnings_of_response
+from rockflex.response import CheckLimits, Response, check, friction_coefficient, warnings_of_response, warnings_of_run
 from rockflex.structure import structure_warnings
 
 _FEW = 4  # elements, whose loops are readable in half a sheet
@@ -163,7 +163,11 @@ def warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str
     """Return the warnings of the runs, each with its models; of the peaks only for the labels in `omitted`."""
     found: dict[str, list[str]] = {}
     for label, run in zip(report.labels, report.responses, strict=True):
-        for text in warnings_of_response(run.model, run.peaks()) if label in omitted else run.warnings:
+        for text in (
+            warnings_of_response(run.model, run.peaks(), report.units)
+            if label in omitted
+            else warnings_of_run(run, report.units)
+        ):
             found.setdefault(text, []).append(label)
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
 
