@@ -133,7 +133,7 @@ def tables_of(phase: LinearPhase, h: float, motions: list[Motion]) -> Tables:
         row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
     C = rows[..., :n]
 
-    steady = c.any(axis=0)
+    steady = np.asarray(c.any(axis=0))
     key = A.tobytes() + f.tobytes() + steady.tobytes()
     motion = next((each for each in motions if each.key == key), None) or motion_of(A, f, steady, h, key)
     bounds = motion.bounds_of(C, m, h)
@@ -235,7 +235,7 @@ class Split(NamedTuple):
     parts: Array  # real and imaginary parts of all w from y', (F, n)
     push: Array  # by how much w may grow within a block, for the variation of a and for |a'|, (F, 2)
     pushed: Array  # |W f|
-    root: NDArray[Any]  # λ
+    root: NDArray[np.complex128]  # λ
     both: Array  # 2 of a pair of conjugate modes, 1 of a mode that does not oscillate
     V: NDArray[Any]
     W: NDArray[Any]
