@@ -286,3 +286,12 @@ def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
     rows = client.ask("/api/alternatives", state)["rows"]
     assert any(german["story drift"] in row[0]["text"] for row in rows)
     assert list(client.refused("/api/state", state | {"language": "la"})) == ["language"]
+
+
+def test_figures_have_the_units_of_the_page(client) -> None:
+    found = {}
+    for units in ("kip-in", "SI"):
+        _, figure = client.download("/api/file/figure", client.state(record=SHORT, units=units))
+        found[units] = " ".join(re.findall(r"<!-- (.*?) -->", figure.decode()))  # of glyphs, what they write
+    assert "kip in" in found["kip-in"]
+    assert "kip" not in found["SI"]

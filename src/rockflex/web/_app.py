@@ -204,8 +204,13 @@ class PageServer:
         return self._making(file_maker(state, request.path_params["what"], self.uploads), state)
 
     def _making(self, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
-        in_language = use_language(state.language)(make)
-        return JSONResponse({"token": self.files.start(BackgroundFileJob(in_language))})
+        def styled(told: Progress) -> tuple[str, bytes]:
+            from rockflex.plot import figure_style
+
+            with figure_style(units=state.units, language=state.language):
+                return make(told)
+
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(styled))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
