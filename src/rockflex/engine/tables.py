@@ -326,7 +326,7 @@ def growth(G: Array, changes: list[Array]) -> Array:
     return found
 
 
-def halvings_of(turn: Any, longest: float) -> Any:
+def halvings_of(turn: Any, longest: float | Array) -> Any:
     """How often a step must be halved so that no mode turns by more than `longest`, in rad."""
     return np.maximum(0, np.ceil(np.log2(np.clip(turn / longest, 1e-300, 1e300)))).astype(int)
 
