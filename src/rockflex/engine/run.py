@@ -75,7 +75,7 @@ class Run:
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.met, self.places, self.motions = system, h, [], {}, []
+        self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
         self.used, self.clock, self.memory = np.zeros(16, dtype=np.int64), 0, MEMORY
         self.n, self.outputs, self.states = system.layout.size, len(system.outputs), up8(system.layout.size + 2)
         self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
@@ -210,7 +210,7 @@ class Run:
 
     def prepare(self, key, place):
         """Prepare a phase, and return its place."""
-        phase, tables = prepared_phase_and_tables(self.system, key, self.h, self.motions)
+        phase, tables = prepared_phase_and_tables(self.system, key, self.h, self.mirrors)
         if self.size > self.memory:
             self.forget()
         self.size += self.phases.add(place, tables, phase.events, self.h)

@@ -24,7 +24,6 @@ from rockflex.engine.tables import (
     halvings_of,
     most_of,
     padded,
-    reach_of,
     shift_of,
     spectral_radius_bound,
     tables_of,
@@ -320,12 +319,14 @@ def shaken_bound_factors(terms: Terms, h: float, m: int, parts: int, pieces: Arr
         some = np.flatnonzero((fine == kind) & (pieces > 0))
         A, more = terms.rates[some, :, :n], terms.rates[some, :, n + 3 :]
         inputs = np.concatenate((terms.rates[some, :, n, None], terms.rates[some, :, n + 2 :]), axis=2)
-        reach = reach_of(A, exponentials_less_identity(A * h, kind + 1)[1:], h)
-        C = np.concatenate((terms.rows[some, :, :n], unit[some]), axis=1)
-        bend, sway, jolt = (
-            ordered(each, n, parts, fed) for each in derivative_bound_factors(A, inputs, C, m, reach, h)
+        changes, C = (
+            exponentials_less_identity(A * h, kind + 1)[1:],
+            np.concatenate((terms.rows[some, :, :n], unit[some]), axis=1),
         )
-        once = most_of(unit[some], reach)
+        bend, sway, jolt = (
+            ordered(each, n, parts, fed) for each in derivative_bound_factors(A, inputs, C, m, changes, h)
+        )
+        once = most_of(unit[some], A, changes, h)
         first = ordered(
             np.concatenate((once, once @ np.abs(inputs), np.zeros((len(some), fed, 2 + fed))), axis=2), n, parts, fed
         )
