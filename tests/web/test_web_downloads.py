@@ -148,7 +148,8 @@ def test_the_gif_is_that_of_the_library(client, frame, tmp_path) -> None:
     pulse = rf.one_sine_pulse(4.0, 0.8).scaled(1.5)
     runs = [rf.simulate(frame, pulse, model, free_vibration=1.0) for model in ("MDOF-S", "fixed")]
     title = f"{pulse.name} × 1.5"
-    same = rf.animate(runs, tmp_path / "same.gif", structure=frame, width=800, title=title)
+    with rf.figure_style(units="SI"):
+        same = rf.animate(runs, tmp_path / "same.gif", structure=frame, width=800, title=title)
     with Image.open(io.BytesIO(made["content"])) as image, Image.open(same) as other:
         assert image.size == other.size
         assert image.n_frames == other.n_frames > 40
