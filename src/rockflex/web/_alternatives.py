@@ -45,7 +45,7 @@ def _model(state: PageState | Alternative) -> str:
 
 
 def _runs_as(kept: Alternative, state: PageState) -> bool:
-    own = ("structure", "impact", "restitution", "bouc_wen", "ground")
+    own = Alternative.model_fields.keys() - {"name", "models"}
     return _model(kept) == _model(state) and all(getattr(kept, name) == getattr(state, name) for name in own)
 
 

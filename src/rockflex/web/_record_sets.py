@@ -14,11 +14,11 @@ from rockflex.report.run import run_report_as_html
 from rockflex.response import DEMANDS, DEMANDS_BY_RECORD, RecordSet, Response, check, checked_rule
 from rockflex.solve import check_interruption
 from rockflex.study import PreparedCase
-from rockflex.web._checks import checks_view
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._jobs import RunsJob
 from rockflex.web._limits import check_size_of_set
 from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._response import checks_view
 from rockflex.web._script import record_set_script
 from rockflex.web._selection import SELECTED, SELECTIONS, VisitorRecords, records_of_named_suites
 from rockflex.web._state import PageState

@@ -14,10 +14,18 @@ from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import History, Response, warnings_of_energy, warnings_of_response
+from rockflex.response import (
+    NO_LIMIT,
+    History,
+    RecordSet,
+    Response,
+    check,
+    check_in_units,
+    warnings_of_energy,
+    warnings_of_response,
+)
 from rockflex.solve import cost_model_of
 from rockflex.study import PreparedCase
-from rockflex.web._checks import checks_view
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._limits import check_work_of_runs
@@ -299,6 +307,29 @@ def is_long_run_report(response: Response, motion: GroundMotion, state: PageStat
     except Refusal:
         return True
     return False
+
+
+LONG_FRICTION = "its friction takes too long for a page; use rockflex check, or rf.check"
+
+
+def checks_view(result: Response | RecordSet, state: PageState, *, friction: bool) -> dict[str, Any]:
+    """Return the checks against the limits of a state; `friction` tells whether to compute what friction is required.
+
+    `unlimited` has the names of the checks that only need a limit, and `missing` what the others lack.
+    """
+    table = check(result, state.check_limits(friction=friction))
+    left_out = {"sliding": LONG_FRICTION} if "friction" in state.limits and not friction else {}
+    missing = [(name, left_out.get(name, lacks)) for name, lacks in table.missing]
+    rows: list[dict[str, Any]] = []
+    for each in table.rows:
+        demand, limit, unit = check_in_units(each, UnitSystem(state.units))
+        row: dict[str, Any] = {"name": each.name, "value": each.demand, "demand": demand, "limit": limit, "unit": unit}
+        rows.append(row | {key: getattr(each, key) for key in ("ratio", "ok", "at_least", "source", "note")})
+    return {
+        "rows": rows,
+        "missing": [each for each in missing if not each[1].startswith(NO_LIMIT)],
+        "unlimited": [name for name, lacks in missing if lacks.startswith(NO_LIMIT)],
+    }
 
 
 def _energy_view(motion: GroundMotion, response: Response, state: PageState) -> dict[str, Any]:
