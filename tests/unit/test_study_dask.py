@@ -204,12 +204,13 @@ def test_workers_without_rockflex_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_chunk_that_kills_workers_is_named(tmp_path: Path) -> None:
-    message = r"Chunk 2 was on one worker after another when it died; \d of the 3 chunks .* too little memory"
+    message = r"Chunk 2 was on one worker after another when it died; 0 of the 1 chunks .* too little memory"
     with (
-        Cluster(tmp_path, workers=2, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
+        Cluster(tmp_path, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
         pytest.raises(ClusterError, match=message),
     ):
-        list(map_chunks_on_dask(DeadlyPlan(), range(3), own.address))
+        # Alone: of several chunks that a worker has when it dies, Dask names any.
+        list(map_chunks_on_dask(DeadlyPlan(), [2], own.address))
 
 
 def test_a_task_that_kills_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,7 +26,7 @@ export function alternatives(app, show) {
   const hint = h("p", { class: "hint" });
   const element = h("section", { id: "alternatives", "aria-label": t("Alternatives") });
   const files = [["comparison", t("Report of all (HTML)")], ...(app.about.pdf ? [["comparison-pdf", t("Report of all (PDF)")]] : [])];
-  const reports = downloads(app, element, files);
+  const reports = downloads(app, files);
   element.append(h("h2", {}, t("Alternatives")),
     h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), table, hint, reports);
   let shown = ""; // what determines the table that is shown

@@ -35,10 +35,12 @@ export function trouble(id = null) {
   return h("div", { class: "error", role: "alert", id });
 }
 
-// Put every message next to its field; return the messages without a field here.
+// Put every message next to its field, in place of those of the same root; return the messages without a field here.
 export function showErrors(root, errors) {
   for (const element of root.querySelectorAll("[data-path]")) {
-    element.querySelector(":scope > .error").textContent = "";
+    const place = element.querySelector(":scope > .error");
+    if ((place.root ?? root) !== root) continue; // a part of the form, such as the project, says what became of its own work
+    place.textContent = "";
     for (const control of controls(element)) control.removeAttribute("aria-invalid");
   }
   const left = [];
@@ -54,7 +56,9 @@ export function showErrors(root, errors) {
     for (let folded = element.closest("details"); folded; folded = folded.parentElement.closest("details")) folded.open = true;
     const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
     const { si } = element.dataset;
-    element.querySelector(":scope > .error").textContent = si && /\d/.test(text)
+    const place = element.querySelector(":scope > .error");
+    place.root = root;
+    place.textContent = si && /\d/.test(text)
       ? t("In SI units ({unit}): {message}", { unit: si, message: text }) : sentence;
     // A message about a whole group does not concern its single fields.
     if (element.classList.contains("field"))

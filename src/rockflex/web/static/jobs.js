@@ -99,11 +99,11 @@ export class Study {
   }
 
   // Buttons for files: files of runs once there are any, the others at any time.
-  downloads(root, ofRuns, others) {
+  downloads(ofRuns, others) {
     const own = [`${this.kind}-records`, t("Records (ZIP)")]; // those that the program has not
     const names = ofRuns.map(([what]) => what);
     const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/file/${what}`);
-    const buttons = downloads(this.app, root, [...ofRuns, ...others, own], path);
+    const buttons = downloads(this.app, [...ofRuns, ...others, own], path);
     const all = [...buttons.querySelectorAll("[data-file]")];
     this.ownRecords = all.find((each) => each.dataset.file === own[0]);
     this.needRuns = all.filter((each) => names.includes(each.dataset.file));
@@ -195,14 +195,14 @@ const FILE_STATUS = {
 };
 
 // Buttons for files, which the server makes in the background: what takes long has its progress below them, and can be
-// cancelled. Messages appear next to the fields of `root`.
-export function downloads(app, root, files, path = (what) => `/api/file/${what}`) {
+// cancelled. Messages appear next to the fields of the tab.
+export function downloads(app, files, path = (what) => `/api/file/${what}`) {
   const going = h("div");
   const status = h("p", { class: "help", role: "status" });
-  const refused = (error) => app.complain(root, error.errors);
 
   async function make(what, label, button) {
     if (button.ariaBusy === "true") return;
+    const root = button.closest(".columns");
     let stopped = false;
     const bar = h("progress", { max: 1, "aria-label": t("Progress of {file}", { file: label }) });
     const cancel = h("button", { type: "button", onclick: () => (stopped = true) }, t("Cancel"));
@@ -225,7 +225,7 @@ export function downloads(app, root, files, path = (what) => `/api/file/${what}`
         if (!goes(answer)) return;
         await new Promise((resolve) => setTimeout(resolve, wait));
       }
-    }, refused);
+    }, (error) => app.complain(root, error.errors));
     clearTimeout(patience);
     row.remove();
     button.ariaBusy = "false";

@@ -30,7 +30,7 @@ export function project(app) {
   const element = folded("project", t("Project and report"), entries.map(([, , shown]) => shown));
   element.append(h("div", { class: "field", "data-path": "project" },
     h("p", { class: "hint" }, t("A project is one file with the structure, the record, the alternatives and these texts.")),
-    downloads(app, element, [["project", t("Save the project")]]),
+    downloads(app, [["project", t("Save the project")]]),
     h("label", { for: "open-project" }, t("Open a project")), fileBox(".rockflex", take, { id: "open-project" }), told, trouble()));
   const refresh = () => entries.forEach(([name, input]) => document.activeElement !== input && (input.value = app.state.head[name] ?? ""));
   return { element, refresh };

@@ -24,8 +24,8 @@ const statistics = () => [
   ["design", t("for design"), { color: "c1", width: 4.5 }],
 ];
 
-// Its form, and its results; `root` is the element with both, which takes messages.
-export function recordSet(app, root) {
+// Its form, and its results.
+export function recordSet(app) {
   const choice = () => app.state.record_set;
   const label = () => (app.state.models.includes(choice().model) ? choice().model : app.state.models[0]);
   const { entry, list, suites } = choices(app, "record_set");
@@ -46,7 +46,7 @@ export function recordSet(app, root) {
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
     entry("scale", t("Scale factor of all records"), { hint: "0.01–20" }), model, rule, study.element);
-  results.append(study.downloads(root, [["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
+  results.append(study.downloads([["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
     [["record_set-python", t("Python lines")]]));
   let view = null;
 

@@ -67,7 +67,7 @@ export default function designTab(app) {
       h("fieldset", {}, h("legend", {}, t("Search")),
         narrowest, widest, widths, own, tendons, stiffness, suites, scales, model, study.element)),
     results);
-  results.append(study.downloads(element,
+  results.append(study.downloads(
     [["figure", t("Figure (SVG)")], ["table", t("Designs (CSV)")]],
     [["design-study", t("Study (TOML)")], ["design-python", t("Python lines")]]));
 

@@ -66,7 +66,7 @@ export default function earthquakeTab(app) {
     h("h2", {}, t("Response spectrum, 5 % damping")), spectrum.element);
   const empty = h("p", { class: "answer", hidden: true }, "");
   const results = h("div", { class: "results" }, empty, given.report, drawing);
-  const chosen = target(app, () => side);
+  const chosen = target(app, () => element);
   const single = [
     h("fieldset", {}, h("legend", {}, t("Ground motion")), source, Object.values(panels),
       h("p", { class: "error foot", role: "alert" })),
@@ -75,8 +75,8 @@ export default function earthquakeTab(app) {
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(downloads(app, element, [["records", t("Your records (ZIP)")]]));
-  drawing.append(downloads(app, element, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
+  given.report.append(downloads(app, [["records", t("Your records (ZIP)")]]));
+  drawing.append(downloads(app, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);

@@ -57,7 +57,7 @@ export default function fragilityTab(app) {
       h("fieldset", {}, h("legend", {}, t("Cloud of runs")), suites, scales, labels, study.element),
       h("fieldset", {}, h("legend", {}, t("Fragility curves")), limit, rotation, measure, confidence)),
     results);
-  results.append(study.downloads(element,
+  results.append(study.downloads(
     [["figure", t("Rocking and overturning (SVG)")], ["table", t("Runs (CSV)")]],
     [["cloud-study", t("Study (TOML)")], ["cloud-python", t("Python lines")]]));
 

@@ -94,7 +94,7 @@ export default function responseTab(app) {
       h("fieldset", {}, h("legend", {}, t("Runs")), scale, options.element, h("p", { class: "error foot", role: "alert" })),
       limitsForm(app), saved.element),
     results);
-  results.append(downloads(app, element, FILES));
+  results.append(downloads(app, FILES));
 
   function draw() {
     const [first] = view.models;
@@ -185,7 +185,7 @@ export default function responseTab(app) {
     const { shown } = app.state.record_set;
     records.setValue(shown ? "set" : "");
     if (shown && !set) {
-      set = recordSet(app, element);
+      set = recordSet(app);
       form.append(set.form);
       element.append(set.results);
     }

@@ -168,7 +168,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(downloads(app, element, [["report", t("Report (HTML)")]]));
+  results.append(downloads(app, [["report", t("Report (HTML)")]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;

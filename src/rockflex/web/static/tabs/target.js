@@ -142,7 +142,7 @@ export function target(app, root) {
     whole.hidden = now().source !== GIVEN;
     load();
   }
-  const files = downloads(app, { querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
+  const files = downloads(app,
     [["selection", t("Records (CSV)")], ["selection-spectra", t("Spectra (CSV)")], ["selection-figure", t("Figure (SVG)")],
       ["selection-records", t("Scaled records (ZIP)")], ["selection-python", t("Python lines")], ["records", t("Your records (ZIP)")]]);
   const whole = files.querySelector('[data-file="records"]'); // which the program reads
