@@ -1,6 +1,7 @@
 """The Fragility and the Design tab in a browser."""
 
 import re
+from typing import Any
 
 import pytest
 
@@ -17,7 +18,18 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     page.get_by_text("A quick look, with fewer runs. Done: 88 runs.").wait_for()  # with two of the three scales
     assert page.locator("#fits tbody tr").count() == 1
     assert page.get_by_role("button", name="Rocking and overturning (SVG)").is_disabled()
-    visitor.run_study()
+    held: list[Any] = []  # until the server has taken the study, what is shown is the quick look
+    page.route("**/api/study/cloud", lambda route: held.append(route), times=1)
+    with page.expect_request("**/api/study/cloud"):
+        page.locator("#run").click()
+    with page.expect_response("**/api/study/cloud/*"):
+        page.get_by_label("Intensity measure").select_option("pga")
+    with page.expect_response("**/api/study/cloud/*"):
+        page.get_by_label("Intensity measure").select_option("pgv")
+    page.evaluate("new Promise((resolve) => setTimeout(resolve, 200))")
+    assert page.locator("#status").inner_text().startswith("A quick look")
+    held[0].continue_()
+    page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Done: ')")
     assert page.locator("#status").inner_text() == "Done: 132 runs."
     assert page.get_by_role("button", name="Rocking and overturning (SVG)").is_enabled()
     runs = rf.run_cloud(frame, rf.load_suite("fema-p695-far-field"), "MDOF-S", [0.5, 1.0, 2.0], free_vibration="settle")

@@ -69,6 +69,7 @@ export class Study {
     Object.assign(this, { app, kind, words, key, show, results, example });
     this.answer = null;
     this.watching = false;
+    this.asked = 0; // how many studies and quick looks were started
     // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
     Object.assign(this, kept[kind] ?? { token: null, looked: null, ran: "" });
     delete kept[kind];
@@ -87,7 +88,7 @@ export class Study {
   // Update the tab after a change of the state.
   refresh() {
     this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
-    if (!this.token && !this.ran) this.#start(this.example());
+    if (!this.token && !this.asked) this.#start(this.example());
     else if (this.token) this.#watch();
     if (this.answer) this.load();
   }
@@ -115,22 +116,20 @@ export class Study {
     return this.element.closest(".columns");
   }
 
-  // The state of the page, with the choices of the quick look.
-  get #state() {
+  // The state of the page, with the choices of a quick look.
+  #with(looked) {
     const { state } = this.app;
-    return this.looked ? { ...state, [this.kind]: { ...state[this.kind], ...this.looked } } : state;
+    return looked ? { ...state, [this.kind]: { ...state[this.kind], ...looked } } : state;
   }
 
   async #start(looked) {
-    const wanted = this.ran = this.key();
+    const wanted = this.key();
+    const asked = ++this.asked;
     await this.#stop();
-    this.looked = looked;
     const path = `/api/study/${this.kind}`;
-    const found = looked ? await attempt(() => ask(path, { state: this.#state }), () => null) : await this.app.ask(path, this.#root);
-    if (!found || this.looked !== looked) return; // a study took the place of the quick look
-    this.token = found.token;
-    this.answer = null;
-    this.ran = wanted;
+    const found = looked ? await attempt(() => ask(path, { state: this.#with(looked) }), () => null) : await this.app.ask(path, this.#root);
+    if (!found || asked !== this.asked) return; // a study took the place of the quick look
+    Object.assign(this, { token: found.token, looked, ran: wanted, answer: null });
     this.#watch();
   }
 
@@ -156,7 +155,7 @@ export class Study {
     const token = this.token;
     if (!token) return;
     await attempt(async () => {
-      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.#state });
+      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.#with(this.looked) });
       if (token !== this.token) return;
       this.answer = answer;
       this.app.complain(this.#root, {});
