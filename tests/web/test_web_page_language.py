@@ -6,6 +6,7 @@ import re
 import pytest
 
 from page_texts import texts_of_answers, texts_of_scripts
+from record_samples import at2
 from rockflex import _language
 from rockflex.web._forms import PRESETS
 
@@ -34,7 +35,7 @@ LEFT = """([left, sentences]) => {
   return [...found].filter((text) => !left.includes(text));
 }"""
 # Messages of errors; names of languages, units, arrays of files and records; the example of a table.
-SENTENCES = ".error, #language, #units, #part, .thumbs, #record-title, textarea"
+SENTENCES = ".error, #language, #units, #part, .thumbs, #record-title, #chosen td:nth-child(2), #report tbody, textarea"
 
 
 class Marks(dict[str, str]):
@@ -74,12 +75,16 @@ def names(client) -> list[str]:
 
 
 def left_on(visitor, names) -> list[str]:
-    """Texts with a word that is no symbol, unit or name, and was not looked up."""
-    page = visitor.page
-    page.wait_for_load_state("networkidle")
-    page.evaluate("for (const folded of document.querySelectorAll('details')) folded.open = true")
-    found = page.evaluate(LEFT, [[*names, visitor.state()["structure"]["name"]], SENTENCES])
-    return [text for text in found if re.search(r"[^\W\d_A-Z]{3,}", re.sub(r"\bm?rad\b", "", text))]
+    """Texts with a word that is no symbol, unit or name, and was not looked up, once what is asked for has come."""
+    page, found = visitor.page, list[str]()
+    for _ in range(40):
+        page.evaluate("for (const folded of document.querySelectorAll('details')) folded.open = true")
+        texts = page.evaluate(LEFT, [[*names, visitor.state()["structure"]["name"]], SENTENCES])
+        found = [text for text in texts if re.search(r"[^\W\d_A-Z]{3,}", re.sub(r"\bm?rad\b", "", text))]
+        if not found and page.evaluate("!document.querySelector('.stale')"):
+            return []
+        page.wait_for_timeout(250)
+    return found
 
 
 @pytest.mark.parametrize(
@@ -121,9 +126,14 @@ def test_every_text_about_records_is_looked_up(marked, names, client, link) -> N
     for source in SOURCES:
         page.locator('[data-path="record.source"] select').select_option(source)
         assert left_on(marked, names) == []
+    page.locator('[data-path="record.source"] select').select_option("folder")
+    page.locator("#files").set_input_files([{"name": "A.AT2", "mimeType": "text/plain", "buffer": at2("000").encode()}])
+    page.wait_for_selector("#report table")
+    assert left_on(marked, names) == []
     page.locator('[data-path="task"] select').select_option("target")
     for kind in TARGETS:
         page.locator('[data-path="target.kind"] select').select_option(kind)
+        page.wait_for_selector("#chosen table, .error:visible")
         assert left_on(marked, names) == []
 
 

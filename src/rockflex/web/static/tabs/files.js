@@ -48,7 +48,7 @@ export function uploading(app, complain) {
     h("p", { class: "help" }, t("A link does not contain the file: whoever opens it needs the file, too.")));
 }
 
-const HEAD = ["record", "PGA [{unit}]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
+const HEAD = [t("record"), "PGA [{unit}]", t("duration [s]"), "Δt [s]", "M", "R [km]", "V_s30 [m/s]", t("recording"), t("component"), t("format"), t("file")];
 
 // `complain` takes messages by the path of their field. `report` is the table, which belongs to the results.
 export function folder(app, complain) {

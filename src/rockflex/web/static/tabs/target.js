@@ -150,7 +150,7 @@ export function target(app, root) {
   return { form, results, refresh };
 }
 
-const HEAD = ["record", "earthquake", "M", "R [km]", "V_s30 [m/s]", "factor", "misfit", "S_a/target"];
+const HEAD = [t("record"), t("earthquake"), "M", "R [km]", "V_s30 [m/s]", t("factor"), t("misfit"), t("S_a/target")];
 
 class Spectra {
   constructor() {
