@@ -41,7 +41,7 @@ export function recordSet(app) {
   const study = new Study(app, "record_set", {
     results, show, words: { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") }, example: () => null,
     key: () => JSON.stringify([assumed(app.state, [label()]), recordsOf(app.state, choice().suites), choice().scale,
-      app.state.free_vibration, app.state.limits.friction === undefined]),
+      app.state.free_vibration, !(app.state.ground?.springs || app.state.ground?.bed) && app.state.limits.friction !== undefined]),
   });
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
