@@ -10,7 +10,7 @@ import { select, slider } from "../form.js";
 import { downloads } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
-import { recordSet } from "../set.js";
+import { PEAKS_HELP, recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { language, t } from "../texts.js";
 import { inUnit, titled, unit, valueIn } from "../units.js";
@@ -66,7 +66,7 @@ export default function responseTab(app) {
   const keys = h("div", { id: "keys" });
   const peaks = scrolled(t("Largest values"), { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
-  const [floors, checks] = [h("div"), h("div")];
+  const [floors, checks] = [h("section"), h("div")];
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const kept = alternatives(app, (found) => {
     ghosts = found.map(({ models: [m] }) => m);
@@ -247,7 +247,6 @@ const PEAKS = [
   ["max_horizontal_reaction", "ΣF_x,max [{unit}]", "force", true],
   ["min_vertical_reaction", "N_min [{unit}]", "force", false],
 ];
-const PEAKS_HELP = t("In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.");
 const RESIDUAL = ["residual_rotation", t("θ_res [{unit}]"), "rotation"];
 const SLIPS = [["max_slip", t("slip_max [{unit}]"), "displacement"], ["residual_slip", t("slip_end [{unit}]"), "displacement"]];
 const EDGE_PEAKS = [["max_edge_uplift", t("Edge up [{unit}]"), "displacement"], ["max_edge_settlement", t("Edge down [{unit}]"), "displacement"]];
