@@ -59,6 +59,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         arg=expected.pivot(1).resisting_moment,
     )
     visitor.wait_for_results()
+    page.locator(f'[data-handle="element {len(kinds) - 1}"]').wait_for()
     signs = page.locator('[data-handle^="element"]').all_inner_texts()
     assert signs == [str(place + 1) for place in range(len(kinds))]
     # An element of another kind keeps what both have.
