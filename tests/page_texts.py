@@ -11,7 +11,7 @@ from babel.messages.extract import extract_javascript
 from rockflex.motion import MEASURES
 from rockflex.response import DEMANDS
 from rockflex.response._limit_checks import KINDS, SOURCES
-from rockflex.web import _earthquake, _structure
+from rockflex.web import _earthquake, _projects, _structure
 from rockflex.web._app import STATIC, _answer_about_page
 
 
@@ -31,7 +31,7 @@ def texts_of_answers() -> set[str]:
     tendons of a design; and what stands beside the values of a structure and a record.
     """
     found = {*_of_forms(_answer_about_page()), *_of_facts(), "no tendon", "its own tendons", _structure.RECENTRING_HELP}
-    found.add("results")  # which the page leaves of a project
+    found |= {"results", _projects.SETTLES}  # what the page leaves of a project
     found |= {text for measure in MEASURES.values() for text in (measure.head, measure.words, measure.title)}
     found |= {*SOURCES, *(each.name for each in KINDS), *(demand.symbol for demand in DEMANDS.values())}
     return found - {""}

@@ -38,6 +38,7 @@ QUANTITIES: Mapping[str, tuple[str, str, str, str]] = {
     "density": ("kg/m³", "kg/m³", "kg/m³", "kip s²/in⁴"),
     "stress": ("kPa", "MPa", "Pa", "ksi"),
     "elastic modulus": ("GPa", "GPa", "Pa", "ksi"),
+    "shear modulus": ("MPa", "MPa", "Pa", "ksi"),
     "stiffness": ("MN/m", "MN/m", "N/m", "kip/in"),
     "rotational stiffness": ("MN m/rad", "MN m/rad", "N m/rad", "kip in/rad"),
     "subgrade modulus": ("MN/m³", "MN/m³", "N/m³", "kip/in³"),

@@ -23,7 +23,17 @@ pytest.importorskip("starlette", reason="the web page needs the packages of rock
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
 
 
-TASKS = ["structure", "optional", "devices", "ground", "runs", "import", "project", "modes"]  # the forms, unfolded
+TASKS = [
+    "structure",
+    "optional",
+    "optional-device",
+    "devices",
+    "ground",
+    "runs",
+    "import",
+    "project",
+    "modes",
+]  # the forms, unfolded
 MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
 
 

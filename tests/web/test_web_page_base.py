@@ -59,7 +59,9 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         arg=expected.pivot(1).resisting_moment,
     )
     visitor.wait_for_results()
-    assert page.locator("#base").get_attribute("aria-label").count(";") == len(kinds) - 1
+    page.locator(f'[data-handle="element {len(kinds) - 1}"]').wait_for()
+    signs = page.locator('[data-handle^="element"]').all_inner_texts()
+    assert signs == [str(place + 1) for place in range(len(kinds))]
     # An element of another kind keeps what both have.
     row = page.locator('details[data-path="structure.elements.1"]')
     row.get_by_label("Element", exact=True).select_option("tendon")
@@ -70,7 +72,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     for _ in kinds[1:]:
         page.locator("details[data-path]:visible").first.get_by_role("button", name="Remove").click()
     assert "elements" not in visitor.state()["structure"]
-    page.wait_for_selector("#base", state="detached")
+    page.wait_for_selector('[data-handle^="element"]', state="detached")
     assert visitor.value("[data-task=modes] dd[data-value] >> nth=2") == bare
 
 
@@ -99,6 +101,15 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
     page.evaluate("rockflexPage.state.structure.elements[0].position = 50; rockflexPage.change({})")
     visitor.wait_for_error(f"{path}.position", "must act within half_width")
     assert rows.first.get_attribute("open") is not None
+
+
+def test_a_new_device_stands_beside_those_of_other_kinds(visitor) -> None:
+    for kind in ("yielding_dissipator", "viscous_damper", "viscous_damper"):
+        visitor.page.get_by_label("Element to add").select_option(kind)
+        visitor.page.get_by_role("button", name="Add an element").click()
+    fuse, damper, twin = (each["position"] for each in held(visitor))
+    assert 0 < damper < fuse
+    assert twin == -damper
 
 
 def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, pier_run) -> None:
@@ -240,7 +251,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
         "stiffness": float(f"{p.m_tot * 9.81 / 0.01:.2g}"),
         "heave_damping_ratio": 0.3,
     }
-    assert page.locator("#base").get_attribute("aria-label").endswith("springs under the base")
+    page.locator('[data-handle="spring 1"]').wait_for()
     visitor.fill("ground.springs.stiffness", "4e8")
     visitor.fill("ground.springs.positions", "-0.5 0 0.5")
 

@@ -167,6 +167,29 @@ def test_handles_cover_no_words(visit, link, width) -> None:
             assert x + wide / 2 < left or x - wide / 2 > right or y < top or y - 10 > bottom
 
 
+@pytest.mark.parametrize("width", [1280, 420])
+def test_handles_of_devices_and_springs_lie_beside_each_other(visit, link, width) -> None:
+    """Two devices at one place and a tall building, whose base is narrower than a finger."""
+    places = (0.0, 0.9, -0.9, 0.9, -0.9)
+    elements = [{"kind": "viscous_damper", "coefficient": 1e6, "position": x} for x in places]
+    ground = {"mat_mass": 4e4, "springs": {"stiffness": 5e8, "heave_damping_ratio": 0.3}}
+    frame = as_json_value(PRESETS[0]["structure"]) | {"elements": elements}
+    state = {"structure": frame, "ground": ground, "models": ["MDOF-S"]}
+    page = visit(link(state), viewport={"width": width, "height": 860}).page
+    page.locator('[data-handle="spring 1"]').wait_for()
+    boxes = page.locator('.handle[data-handle*=" "]').evaluate_all(
+        "all => all.map((each) => [each.dataset.handle, each.getBoundingClientRect().toJSON()])"
+    )
+    assert len(boxes) == 7
+    for i, (_, one) in enumerate(boxes):
+        for _, other in boxes[:i]:
+            apart = [max(one[low], other[low]) - min(one[high], other[high]) for low, high in
+                     (("left", "right"), ("top", "bottom"))]  # fmt: skip
+            assert max(apart) > 0.0
+    across = [box["left"] for name, box in boxes if name.startswith("element")]
+    assert [across.index(x) for x in sorted(across)][2] == 0  # the middle one stays in the middle
+
+
 @pytest.mark.parametrize("tab", ["structure", "response"])
 def test_on_a_phone_the_drawing_stays_in_sight(visit, link, tab) -> None:
     visitor = visit(link({"structure": as_json_value(PIER), "tab": tab}), viewport={"width": 420, "height": 860})

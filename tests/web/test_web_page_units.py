@@ -48,6 +48,23 @@ def test_what_is_typed_in_inches_and_kips_is_kept_in_si_units(visit, link):
     visitor.page.locator(".foot").filter(has_text="Structure, half width").wait_for()
 
 
+def test_soils_are_in_megapascals_and_rows_stay_open_in_other_units(visit, link):
+    bed = {"bed": {"breadth": 4.0, "shear_modulus": 39e6, "poisson_ratio": 0.3, "method": "gazetas"}, "mat_mass": 1e5}
+    visitor = visit(link({"structure": as_json_value(FUSES), "ground": bed, "models": ["2DOF-S"], "units": "kN"}))
+    assert field(visitor, "ground.bed.shear_modulus").input_value() == "39"
+    assert "MPa" in text(visitor, '[data-path="ground.bed.shear_modulus"]')
+    rows = visitor.page.locator('details[data-path^="structure.elements."]')
+    opened = "all => all.map((each) => each.open)"
+    rows.nth(1).locator("summary").first.click()
+    assert rows.evaluate_all(opened) == [False, True, False]
+    before = rows.first.element_handle()
+    visitor.page.locator("#units").select_option("kip-in")
+    visitor.page.wait_for_function("row => !row.isConnected", arg=before)
+    assert rows.evaluate_all(opened) == [False, True, False]
+    visitor.fill("ground.bed.shear_modulus", "10")
+    assert visitor.state()["ground"]["bed"]["shear_modulus"] == pytest.approx(10e3 * constants.psi, rel=1e-12)
+
+
 def test_forty_kilonewtons_are_forty_thousand_newtons_in_a_field(visit, link):
     springs = {"springs": {"stiffness": 4e8, "positions": [-1.0, 1.0], "heave_damping_ratio": 0.3}}
     visitor = visit(link({"structure": as_json_value(FUSES), "ground": springs, "models": ["2DOF-S"], "units": "kN"}))

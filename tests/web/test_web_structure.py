@@ -289,6 +289,23 @@ def test_a_structure_tells_the_springs_under_it():
     assert structure_view(slides.structure, slides.ground)["ground"] == {"slides": True, "springs": [], "facts": []}
 
 
+def test_mass_that_leans_stands_not_on_the_base():
+    given = PRESETS[0]["structure"] | {"leaning_masses": 60e3}
+    assert structure_view(parse_page_state({"structure": given}).structure)["mass"] == pytest.approx(6 * 40e3)
+
+
+def test_a_response_tells_the_peaks_of_each_story(client):
+    state = client.state(models=["2DOF-S", "MDOF-S"])
+    rows = client.ask("/api/response", state)["floors"]
+    run = rf.simulate(rf.Frame(**frame_values()), rf.load_suite("el-centro-1940")[0], "2DOF-S", free_vibration=5.0)
+    assert [row["height"] for row in rows] == [15.0, 12.0, 9.0, 6.0, 3.0]
+    for name in ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement"):
+        assert [row[name] for row in rows] == getattr(run.floors, name)[::-1].tolist()
+    assert [row["drift_ratio"] for row in rows] == pytest.approx(run.floors.story_drift[::-1] / 3.0)
+    block = client.state(structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}}, models=["rigid"])
+    assert client.ask("/api/response", block)["floors"] == []
+
+
 BASE = {"height": 12.0, "base_mass": 1e4, "half_width": 1.2, "damping_ratio": 0.03}
 TUBE = {"shape": "tube", "diameter": 1.6, "wall": 0.1, "elastic_modulus": 30e9, "density": 2500.0}
 MADE = rf.Section.tube(1.6, 0.1, elastic_modulus=30e9, density=2500.0)

@@ -31,6 +31,7 @@ from rockflex.web._state import MAX_FREE_VIBRATION, PageState, parse_page_json, 
 from rockflex.web._uploads import UploadedRecords
 
 FIELD = "project"  # of the messages
+SETTLES = f"free vibration until the structure is at rest (here {MAX_FREE_VIBRATION:g} s)"
 LIMITS = ArchiveLimits(MAX_FOLDER_FILES, MAX_FILE_BYTES, MAX_FOLDER_BYTES, MAX_TOML_BYTES)
 
 
@@ -67,7 +68,9 @@ def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]
         raise Refusal({FIELD: "it is nested too deep to be read."}) from error
     except (InputError, Refusal) as error:
         raise Refusal({FIELD: str(error)}) from error
-    return {"state": json.loads(_json(state)), "left": ["results"] if document.results else []}
+    settles = PAGE not in members and document.free_vibration == "settle"
+    left = [*["results"] * bool(document.results), *[SETTLES] * settles]
+    return {"state": json.loads(_json(state)), "left": left}
 
 
 def _state_of_document(members: Mapping[str, bytes], document: ProjectDocument) -> dict[str, Any]:

@@ -196,9 +196,34 @@ def response_view(
             ),
             "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
+            "floors": floors_view(found[0]),
             "checks": checks_view(found[0], state, friction=not is_long_run_report(found[0], motion, state)),
         }
     )
+
+
+MAX_FLOORS = 60  # of a table
+
+
+def floors_view(response: Response) -> list[dict[str, float]]:
+    """Return the peaks of each floor from the top down, with its height in m; none if they are not known."""
+    assert response.history is not None  # asked for in `simulate_state_models`
+    peaks, floors = response.floors, response.history.model.properties.floors
+    if peaks is None or floors is None or floors.heights.size > MAX_FLOORS:
+        return []
+    stories = np.diff(floors.heights, prepend=0.0)
+    if stories.min() <= 0.0:
+        return []
+    columns = {
+        "height": floors.heights,
+        "story_drift": peaks.story_drift,
+        "drift_ratio": peaks.story_drift / stories,
+        "story_shear": peaks.story_shear,
+        "floor_acceleration": peaks.floor_acceleration,
+        "total_floor_displacement": peaks.total_floor_displacement,
+    }
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows][::-1]
 
 
 def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) -> float | None:

@@ -151,7 +151,7 @@ def structure_outline_view(entry: StructureEntry, built: BuiltStructure, ground:
         "kind": entry.kind,
         "heights": outline.heights,
         "shapes_known": not isinstance(built.structure, RockingProperties),
-        "mass": p.m_tot * p.weight_share,  # whose weight stands on the base
+        "mass": p.m_tot,  # whose weight stands on the base
         "period": 2.0 * np.pi / p.omega[0] if p.n_modes else None,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,

@@ -14,7 +14,7 @@ export function nameOf(about, each, place) {
 }
 
 // Strokes in pixels, [across, along], of a symbol of the server that reaches from the ground to `length` along.
-export function strokes(symbol, length, half = 1) {
+function strokes(symbol, length, half = 1) {
   return symbol.map(([points, width, filled]) => ({ points: points.map(([u, share]) => [half * u, share * length]), width, filled }));
 }
 

@@ -4,7 +4,7 @@ import { attempt, get } from "./api.js";
 import { explained } from "./choices.js";
 import { clone, decode, h, latest, number } from "./dom.js";
 import { box, select, slider } from "./form.js";
-import { Player } from "./stage.js";
+import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
 import { eachNumber, inUnit } from "./units.js";
 
@@ -15,6 +15,8 @@ const LEAD = 3; // s before the largest rotation at which the drawing begins to 
 const FAR_FIELD = "fema-p695-far-field";
 const SELDOM = 200; // ms between two values of a text field during a drag: browsers inspect the form after each
 const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
+const touched = matchMedia("(max-width: 900px), (pointer: coarse)");
+const size = () => (touched.matches ? 26 : 16); // px of a handle, as in style.css
 const tidy = (value) => Number(value.toPrecision(3));
 const clamp = (value, [low, high]) => Math.min(high, Math.max(low, value));
 const times = (value, factor) => eachNumber(value, (each) => Number((each * factor).toPrecision(6)));
@@ -47,8 +49,8 @@ export function measures(structure, view, kinds) {
   return found;
 }
 
-// The handles of a drawing: each is a number with its range, at a place in metres, `down` px lower. What stands in a pair
-// about the middle stays a pair.
+// The handles of a drawing: each is a number with its range, at a place in metres, in a `row` below it. What stands in a
+// pair about the middle stays a pair.
 function handles(app, view, wanted) {
   const { structure, ground } = app.state;
   const { B, H } = measures(view.of, view, app.about.kinds);
@@ -69,7 +71,7 @@ function handles(app, view, wanted) {
   (structure.elements ?? []).forEach((each, i) => {
     if (each.between || each.height) return;
     const { kind, position = 0 } = each;
-    found.push({ name: `element ${i}`, label: t("Position of {number}, {kind}", { number: i + 1, kind: t(app.about.elements[kind].title) }), value: position, range: within, at: [position, 0], down: 17,
+    found.push({ name: `element ${i}`, label: t("Position of {number}, {kind}", { number: i + 1, kind: t(app.about.elements[kind].title) }), value: position, range: within, at: [position, 0], row: 1, sign: i + 1,
       next: (v) => {
         const all = structure.elements.map((other) => (other.kind === kind && !other.between && !other.height ? other.position ?? 0 : NaN));
         const now = moved(all, i, v);
@@ -77,10 +79,25 @@ function handles(app, view, wanted) {
       } });
   });
   if (stood.length < 9) stood.forEach((x, i) => found.push({
-    name: `spring ${i}`, label: t("Position of spring {number}", { number: i + 1 }), value: x, range: within, at: [x, 0], down: places.length ? 34 : 17,
+    name: `spring ${i}`, label: t("Position of spring {number}", { number: i + 1 }), value: x, range: within, at: [x, 0], row: places.length ? 2 : 1,
     next: (v) => ({ ground: { springs: { positions: moved(stood, i, v) } } }),
   }));
   return found;
+}
+
+// Where handles are across, in px: beside each other in their rows, as near to their places as they can be.
+function spread(found, stage) {
+  const across = new Map();
+  for (const row of new Set(found.map((each) => each.row))) {
+    const own = found.filter((each) => each.row === row).map(({ name, at }) => [name, stage.spot(...at)[0]]).sort((a, b) => a[1] - b[1]);
+    const pitch = row ? Math.min(size() + 2, stage.width / own.length) : 0;
+    const right = [];
+    const left = [];
+    own.forEach(([, x], i) => right.push(Math.max(x, i ? right[i - 1] + pitch : x)));
+    own.toReversed().forEach(([, x], i) => left.unshift(Math.min(x, i ? left[0] - pitch : x)));
+    own.forEach(([name], i) => across.set(name, (left[i] + right[i]) / 2));
+  }
+  return across;
 }
 
 // `load(quick)` asks for another response; `settle()` is called once a change is over.
@@ -147,14 +164,19 @@ export function drawing(app, settle) {
       element.remove();
       dots.delete(name);
     }
-    for (const { name, label, value, range, at, up, down = 0 } of found) {
+    const across = spread(found, stage);
+    for (const { name, label, value, range, at, up, row = 0, sign = "" } of found) {
       if (!dots.has(name)) {
         dots.set(name, dot(name));
         stage.layer.append(dots.get(name));
       }
       const element = dots.get(name);
       const [x, y] = stage.spot(...at);
-      element.style.transform = `translate(${x}px, ${y + down}px)`; // without a new layout
+      const [off, down] = [across.get(name) - x, row * (size() + 2)];
+      element.style.transform = `translate(${x + off}px, ${y + down}px)`; // without a new layout
+      element.style.setProperty("--reach", `${Math.abs(off) > 1 ? Math.hypot(off, down) - 8 : 0}px`);
+      element.style.setProperty("--turn", `${Math.atan2(off, -down)}rad`);
+      element.textContent = sign;
       const length = inUnit(value, "length", 3);
       element.title = `${label}: ${length}`;
       const said = {
@@ -182,6 +204,7 @@ export function drawing(app, settle) {
     for (const name of CURVES) m[name] = m[name] && decode(m[name]);
     if (of === app.state.structure) wanted = {};
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
+    stage.under = Math.max(...handles(app, view, wanted).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
     player.set(view);
     place();
     figures.replaceChildren(...three(m, run));
@@ -256,7 +279,7 @@ function few(app, shown, settle) {
       each.hidden = !found[name];
       if (found[name]) each.setValue(each.unit.size === 1 ? tidy(found[name].value) : found[name].value);
     }
-    if (view) fields.H.querySelector(".hint").textContent = t("slenderness: {ratio} times B", { ratio: number(view.heights.at(-1) / view.half_width, 3) });
+    if (view) fields.H.querySelector(".hint").textContent = t("{ratio} times B", { ratio: number(view.heights.at(-1) / view.half_width, 3) });
   }
   return { element: h("div", { class: "few" }, Object.values(fields), record, scale), refresh };
 }

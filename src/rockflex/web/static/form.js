@@ -10,7 +10,7 @@ let serial = 0;
 export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
 
 // A field around any control; the server's messages about `path` appear in it. `unit` is that of SI: `element.unit` is shown.
-export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
+export function field(path, label, control, { unit = "", hint = "", help = "", name = "" } = {}) {
   const id = control.id || `f${++serial}`;
   control.id = id;
   control.setAttribute("aria-describedby", hint ? `${id}-hint ${id}-error` : `${id}-error`);
@@ -21,7 +21,7 @@ export function field(path, label, control, { unit = "", hint = "", help = "" } 
     hint ? h("div", { class: "hint", id: `${id}-hint` }, symbol(hint)) : null,
     trouble(`${id}-error`));
   element.setUnit = (si) => {
-    element.unit = unitFor(si);
+    element.unit = unitFor(si, name);
     element.dataset.si = element.unit.size === 1 ? "" : si;
     sign.textContent = element.unit.name;
     sign.hidden = !si;
@@ -160,7 +160,7 @@ function plain(value) {
 // One field of a table that the server describes; `change(value)` is called with undefined where it was left empty.
 export function tableField(path, spec, value, change) {
   const shown = value ?? spec.default;
-  const unit = unitFor(spec.unit ?? "");
+  const unit = unitFor(spec.unit ?? "", spec.name);
   let control;
   if (spec.type === "choice") {
     control = h("select", { onchange: () => change(control.value) },
@@ -179,8 +179,9 @@ export function tableField(path, spec, value, change) {
   const limits = spec.low === null ? "" : between(...fromSI([spec.low, spec.high], unit), unit.name);
   const typed = spec.type !== "flag" && spec.type !== "choice";
   const optional = typed && !spec.required ? t("optional") : "";
-  const hint = [t(spec.help).replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
-  const element = field(path, t(spec.label), control, { unit: spec.unit, hint });
+  const each = spec.type === "number or list" ? t("one number for all, or a list") : "";
+  const hint = [t(spec.help).replace(/\.$/, ""), each, limits, optional].filter(Boolean).join("; ");
+  const element = field(path, t(spec.label), control, { unit: spec.unit, name: spec.name, hint });
   element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, unit)));
   return element;
 }

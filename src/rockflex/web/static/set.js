@@ -24,6 +24,8 @@ const statistics = () => [
   ["design", t("for design"), { color: "c1", width: 4.5 }],
 ];
 
+export const PEAKS_HELP = t("In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.");
+
 // Its form, and its results.
 export function recordSet(app) {
   const choice = () => app.state.record_set;
@@ -41,7 +43,7 @@ export function recordSet(app) {
   const study = new Study(app, "record_set", {
     results, show, words: { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") }, example: () => null,
     key: () => JSON.stringify([assumed(app.state, [label()]), recordsOf(app.state, choice().suites), choice().scale,
-      app.state.free_vibration, app.state.limits.friction === undefined]),
+      app.state.free_vibration, !(app.state.ground?.springs || app.state.ground?.bed) && app.state.limits.friction !== undefined]),
   });
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
@@ -63,7 +65,7 @@ export function recordSet(app) {
     drawPeaks();
     drawRotations();
     tables.replaceChildren(
-      h("h2", {}, t("Statistics of {model}", { model: view.model })), scrolled(t("Statistics"), { id: "statistics" }, ofDemands(view)),
+      h("h2", {}, t("Statistics of {model}", { model: view.model })), scrolled(t("Statistics"), { id: "statistics" }, ofDemands(view)), h("p", { class: "hint" }, symbol(PEAKS_HELP)),
       ...[...new Set(view.demands.map((each) => each.reason))].map((reason) => h("p", { class: "hint" }, t("For design: {reason}.", { reason }))),
       checksTable(view.checks, t("the set")),
       h("h2", {}, t("Records")), scrolled(t("Peaks of each record"), { id: "of-records" }, ofRecords(view)));

@@ -10,6 +10,7 @@ import { unit } from "./units.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
 const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window
+export const UNDER = 44; // px below the ground, for words or handles
 const GHOST = 0.55; // opacity
 const narrow = matchMedia("(max-width: 900px)");
 
@@ -22,7 +23,7 @@ class Stage {
     });
     this.layer = h("div", { class: "handles" });
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
-    Object.assign(this, { symbols, tall: height, height, room, held: false }); // held: the scale stays while something is dragged
+    Object.assign(this, { symbols, tall: height, height, room, held: false, under: UNDER }); // held: the scale stays while something is dragged
     this.view = null;
     this.ghosts = []; // other structures that move behind the first model
     this.time = 0;
@@ -91,11 +92,11 @@ class Stage {
     const reach = Math.max(falls ? top + 2 * b : 0.32 * top, 1.6 * b, ...all.map((view) => view.reach));
     const wide = cell / (2.1 * reach);
     if (!this.held || !this.zoom) {
-      const first = Math.min((this.height - 74) / (top * this.room), wide);
+      const first = Math.min((this.height - 30 - this.under) / (top * this.room), wide);
       this.depth = depthOf(this.view, this.amplification, first);
-      this.zoom = Math.min((this.height - 74 - this.depth) / (top * this.room), wide);
+      this.zoom = Math.min((this.height - 30 - this.under - this.depth) / (top * this.room), wide);
     }
-    const [before, scale] = [this.scale, [width, this.height, this.zoom, this.depth].join()];
+    const [before, scale] = [this.scale, [width, this.height, this.under, this.zoom, this.depth].join()];
     Object.assign(this, { width, scale });
     if (scale !== before) this.placed?.(); // which changes the page, so not at every frame
     this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
@@ -103,11 +104,11 @@ class Stage {
 
   // Where a point of the only model is while it rests, in px.
   spot(x, y) {
-    return [this.width / 2 + this.zoom * x, this.height - 44 - (this.view.models[0].heave ? this.depth : 0) - this.zoom * y];
+    return [this.width / 2 + this.zoom * x, this.height - this.under - (this.view.models[0].heave ? this.depth : 0) - this.zoom * y];
   }
 
   #model(g, model, index, centre, zoom, cell) {
-    const ground = this.height - 44; // and above it, the level at which springs are unloaded
+    const ground = this.height - this.under; // and above it, the level at which springs are unloaded
     const level = ground - (model.heave ? this.depth : 0);
     const frame = this.frameAt(index, this.time, this.amplification);
     const to = ([x, y]) => [centre + zoom * x, level - zoom * y];

@@ -15,9 +15,11 @@ export const unit = (quantity, usual = quantity === "acceleration" ? "SI" : "kN"
 // Kinds of quantities of which others have the same unit in SI; rotations that are typed are in rad in every system.
 const KINDS = { m: "length", "N/m²": "elastic modulus", Pa: "stress", rad: "" };
 
-// The unit that is shown for one of SI.
-export function unitFor(si) {
-  const quantity = KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
+const OF_SOIL = "shear_modulus"; // a field whose usual unit is not that of materials
+
+// The unit that is shown for one of SI, of a field of this name.
+export function unitFor(si, name = "") {
+  const quantity = name === OF_SOIL ? "shear modulus" : KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
   return quantity ? unit(quantity) : { size: 1, name: si };
 }
 

@@ -1,68 +1,10 @@
-// The base of a structure: its drawing, the elements between it and the ground, and the ground itself.
+// The base of a structure: the elements between it and the ground, and the ground itself.
 
 import { grounded, yields } from "../choices.js";
-import { clone, h, ink, svg } from "../dom.js";
-import { nameOf, strokes } from "../drawing.js";
+import { clone, h } from "../dom.js";
+import { nameOf } from "../drawing.js";
 import { folded, select, tableField, trouble } from "../form.js";
 import { t } from "../texts.js";
-
-const [WIDTH, HEIGHT] = [460, 104];
-const [BASE, GROUND] = [40, 74]; // px from the top
-const NUMBERS = 13; // px between numbers that would overlap
-
-export function base(about, view) {
-  const { half_width: b, eccentricity: e, elements, ground } = view;
-  const springs = ground?.springs ?? [];
-  const reach = Math.max(b + Math.abs(e), ...elements.map((each) => Math.abs(each.position)));
-  const x = (metres) => WIDTH / 2 + (metres / reach) * (WIDTH / 2 - 24);
-  const [left, right] = [x(-b - e), x(b - e)];
-  const names = elements.map((each, i) => nameOf(about, each, i));
-  if (springs.length) names.unshift(t("springs under the base"));
-  return svg("svg", {
-    id: "base", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": t("The base and what holds it: {names}", { names: names.join("; ") }),
-  },
-  svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: ink("control"), "stroke-dasharray": "4 3" }),
-  svg("path", { d: hatch(), stroke: ink("muted"), fill: "none" }),
-  ...elements.flatMap((each) => drawn(about.symbols, each, x(each.position))),
-  svg("line", { x1: left, x2: right, y1: BASE, y2: BASE, stroke: ink("structure"), "stroke-width": 5 }),
-  ...springs.flatMap((place) => sprung(about.symbols.spring, x(place), springs.length)),
-  ...(springs.length ? [] : [left, right]).map((at) => svg("path", { d: `M${at} ${BASE}l-7 ${GROUND - BASE}h14z`, fill: ink("structure") })),
-  ...numbers(elements.map((each) => x(each.position))));
-}
-
-function hatch() {
-  let path = `M8 ${GROUND}H${WIDTH - 8}`;
-  for (let at = 14; at < WIDTH - 8; at += 10) path += `M${at} ${GROUND}l-5 6`;
-  return path;
-}
-
-function sprung(symbol, at, count) {
-  return lines(symbol, at, GROUND, GROUND - BASE, "soil", count > 4 ? 5 : 7);
-}
-
-function drawn(symbols, { symbol }, at) {
-  const below = symbol === "tendons" ? 10 : 0;
-  return lines(symbols[symbol], at, GROUND + below, below ? GROUND + 6 : GROUND - BASE, symbol);
-}
-
-function lines(symbol, at, from, length, tone, half) {
-  return strokes(symbol, length, half).map(({ points, width, filled }) => svg("polyline", {
-    points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(from - v).toFixed(1)}`).join(" "),
-    fill: filled ? ink(tone) : "none", stroke: ink(tone), "stroke-width": width,
-  }));
-}
-
-// The numbers below the ground, each in the highest row where it has room.
-function numbers(places) {
-  const rows = [];
-  return places.map((at, i) => ({ at, i })).sort((a, b) => a.at - b.at).map(({ at, i }) => {
-    let row = rows.findIndex((last) => at - last >= NUMBERS);
-    if (row < 0) row = rows.length;
-    rows[row] = at;
-    return svg("text", { x: at, y: GROUND + 18 + 11 * Math.min(row, 1), "text-anchor": "middle", "font-size": 11, fill: ink("text") },
-      String(i + 1));
-  });
-}
 
 const PLACES = ["position", "between", "height", "cosine"];
 
@@ -78,7 +20,9 @@ function fresh(kind, list, view) {
   const twin = alike.find((each) => each.position && !alike.some((other) => other.position === -each.position));
   if (twin) return { ...clone(twin), position: -twin.position };
   const share = (part) => round(weight * part);
-  const edge = round(0.85 * (b - Math.abs(e)));
+  let part = 0.85; // further in than those of other kinds
+  while (part > 0.3 && list.some((each) => Math.abs(Math.abs(each.position) - part * (b - Math.abs(e))) < 0.05 * b)) part -= 0.15;
+  const edge = round(part * (b - Math.abs(e)));
   const pieces = (force, each) => Math.min(Math.max(Math.round(force / each), 1), 100); // of catalogues
   const bar = { position: edge, stiffness: share(1 / 8 / 0.002), yield_force: share(1 / 8) };
   const values = {
@@ -97,11 +41,14 @@ function fresh(kind, list, view) {
   return { kind, ...values[kind] };
 }
 
+let latest = h("div"); // the rows of the latest form, of which another one in other units opens the same
+
 // `current` returns a copy of the structure, `put` takes the changed one; `shown` returns its view, if there is one.
 export function elements({ about }, current, put, shown) {
   const titles = Object.entries(about.elements).map(([name, { title }]) => [name, t(title)]);
   const most = about.limits.elements;
-  const rows = h("div");
+  const before = latest;
+  const rows = latest = h("div");
   const kind = h("select", { id: "new-element", "aria-label": t("Element to add") },
     titles.map(([name, title]) => h("option", { value: name }, title)));
   const add = h("button", { type: "button", onclick: () => {
@@ -125,7 +72,7 @@ export function elements({ about }, current, put, shown) {
   }
 
   function draw(list) {
-    const open = [...rows.children].map((row) => row.open);
+    const open = [...(rows.firstChild ? rows : before).children].map((row) => row.open);
     rows.replaceChildren(...list.map((each, i) => row(each, i, open[i] ?? list.length < 2)));
     add.disabled = list.length >= most;
     element.querySelector("summary").textContent = list.length ? t("Devices at the base ({n})", { n: list.length }) : t("Devices at the base");
@@ -147,7 +94,7 @@ export function elements({ about }, current, put, shown) {
     })]);
     const fields = all.filter(([wanted]) => wanted).map(([, each]) => each);
     const left = all.filter(([wanted]) => !wanted).map(([, each]) => each);
-    if (left.length) fields.push(folded("optional", t("Optional fields"), left));
+    if (left.length) fields.push(folded("optional-device", t("Optional fields"), left));
     const remove = h("button", { type: "button", onclick: () => {
       rows.children[i].remove(); // so that the others stay open or closed
       change((list) => list.filter((_, j) => j !== i));

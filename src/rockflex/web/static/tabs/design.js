@@ -77,11 +77,17 @@ export default function designTab(app) {
     const curves = answer.curves.map((curve, i) => ({ ...curve, x: numbers(curve.half_width, "length"), look: look(i) }));
     const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
       .filter((each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome));
+    // Through the width found too: between widths, logarithms of probabilities are interpolated.
+    const through = (c) => {
+      const found = met.filter((each) => each.tendon === c.tendon).map((each) => [...numbers([each.half_width], "length"), choice().target]);
+      const all = [...numbers(c.probability).map((y, i) => [c.x[i], y]), ...found].sort(([a], [b]) => a - b);
+      return { x: all.map(([x]) => x), y: all.map(([, y]) => y) };
+    };
     chart.set({
       yRange: [-0.02, 1.02],
       series: [
         ...curves.map(band).filter(Boolean),
-        ...curves.map((c) => ({ x: c.x, y: numbers(c.probability), label: c.tendon, ...c.look, width: 2 })),
+        ...curves.map((c) => ({ ...through(c), label: c.tendon, ...c.look, width: 2 })),
         ...curves.map((c) => (
           { kind: "points", x: c.x, y: numbers(c.probability), color: c.look.color, size: 3 })),
         ...met.map((each) => (

@@ -10,7 +10,7 @@ import { select, slider } from "../form.js";
 import { downloads } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
-import { recordSet } from "../set.js";
+import { PEAKS_HELP, recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { language, t } from "../texts.js";
 import { inUnit, titled, unit, valueIn } from "../units.js";
@@ -66,7 +66,7 @@ export default function responseTab(app) {
   const keys = h("div", { id: "keys" });
   const peaks = scrolled(t("Largest values"), { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
-  const checks = h("div");
+  const [floors, checks] = [h("section"), h("div")];
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const kept = alternatives(app, (found) => {
     ghosts = found.map(({ models: [m] }) => m);
@@ -81,7 +81,7 @@ export default function responseTab(app) {
     h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
       h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
         "drag or press + and − to zoom; double-click or press Escape to reset."))),
-    h("h2", {}, t("Largest values")), peaks, kept.element, elements.table, checks,
+    h("h2", {}, t("Largest values")), peaks, floors, kept.element, elements.table, checks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, t("Moment and rotation")), loop.chart.element), elements.chart,
       energy.element));
   const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
@@ -100,7 +100,7 @@ export default function responseTab(app) {
     const [first] = view.models;
     const falls = view.models.map((m) => m.fall_time ?? Infinity).filter(Number.isFinite);
     const spans = uplifts(first);
-    // Of the element whose loop is drawn, with its number in the drawing of the base.
+    // Of the element whose loop is drawn, with its number in the form.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = titled(`F_${view.element + 1} [{unit}]`, "force");
     panels.forEach(([, chart, parts], p) => {
       const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, name], k) => ({
@@ -123,6 +123,7 @@ export default function responseTab(app) {
     keys.replaceChildren(legend([...view.models, ...ghosts].map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
     checks.replaceChildren(checksTable(view.checks, first.label));
+    floors.replaceChildren(...(view.floors.length > 1 ? byFloor(view.floors, first.label) : []));
     verdict.textContent = summary(view);
     warned.replaceChildren(...warnings(view));
     warned.hidden = !warned.children.length;
@@ -246,13 +247,26 @@ const PEAKS = [
   ["max_horizontal_reaction", "ΣF_x,max [{unit}]", "force", true],
   ["min_vertical_reaction", "N_min [{unit}]", "force", false],
 ];
-const PEAKS_HELP = t("In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.");
 const RESIDUAL = ["residual_rotation", t("θ_res [{unit}]"), "rotation"];
 const SLIPS = [["max_slip", t("slip_max [{unit}]"), "displacement"], ["residual_slip", t("slip_end [{unit}]"), "displacement"]];
 const EDGE_PEAKS = [["max_edge_uplift", t("Edge up [{unit}]"), "displacement"], ["max_edge_settlement", t("Edge down [{unit}]"), "displacement"]];
 const ON_SPRINGS = t("Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.");
 const LEFT = t("θ_res: rotation at the end of the run, from that at rest.");
 const STATUS = { no_uplift: t("no uplift"), rocking: t("rocking") };
+
+const FLOORS = [
+  ["height", t("Height [{unit}]"), "length"], ["story_drift", t("Drift [{unit}]"), "displacement"],
+  ["drift_ratio", t("Drift over story height [{unit}]"), "share"], ["story_shear", t("Shear [{unit}]"), "force"],
+  ["floor_acceleration", t("Acceleration [{unit}]"), "acceleration"], ["total_floor_displacement", t("Displacement [{unit}]"), "displacement"],
+];
+
+function byFloor(floors, model) {
+  return [h("h2", {}, t("Stories of {model}", { model })), scrolled(t("Largest values by story"), { id: "floors" },
+    tableOf([t("Story"), ...FLOORS.map(([, text, quantity]) => titled(text, quantity))], floors.map((each, i) => h("tr", {},
+      h("th", { scope: "row" }, String(floors.length - i)),
+      FLOORS.map(([name, , quantity]) => h("td", { "data-name": name, "data-value": each[name] }, valueIn(each[name], quantity))))))),
+  h("p", { class: "hint" }, t("Height and acceleration: of the floor above the story. Drift: of that floor over the one below, without the rotation of the base. Displacement: relative to the ground, rotation included."))];
+}
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {

@@ -9,7 +9,7 @@ import { downloads } from "../jobs.js";
 import { project } from "../project.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
-import { base, elements, ground, without } from "./base.js";
+import { elements, ground, without } from "./base.js";
 import { runs } from "./runs.js";
 
 // Default values of a form where no preset has the kind.
@@ -201,7 +201,6 @@ export default function structureTab(app) {
         ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
       view.freedoms ? h("p", { class: "hint", id: "freedoms" }, view.freedoms) : "",
       pictures(view),
-      view.elements.length || view.ground ? base(app.about, view) : "",
       h("dl", { class: "values" }, view.properties.map(parameter)),
       view.section.length ? h("h2", {}, t("Cross-section")) : "",
       view.section.length ? h("dl", { class: "values", id: "section" }, view.section.map(parameter)) : "",
