@@ -149,8 +149,15 @@ A file with the columns "period (s), sa (g)".
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
 _choice = partial(options.option, rich_help_panel="Choice")
-FLAGS = {"n": "--count", "periods": "--periods", "scale_limits": "--limits", "per_event": "--per-event"}
-FLAGS |= {"per_station": "--per-station", "record_weight": "--record-weight", "least_ratio": "--least"}
+FLAGS = {
+    "n": "--count",
+    "periods": "--periods",
+    "scale_limits": "--limits",
+    "per_event": "--per-event",
+    "per_station": "--per-station",
+    "record_weight": "--record-weight",
+    "least_ratio": "--least",
+}
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",
