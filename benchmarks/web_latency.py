@@ -59,7 +59,7 @@ def session(port: int, number: int, until: float, times: dict[str, list[float]])
         state["scale"] = round(chance.uniform(0.2, 3.0), 3)
         kind = chance.choices(("response", "record", "structure"), (8, 1, 1))[0]
         if kind == "structure":
-            state["structure"]["frame"]["period"] = round(chance.uniform(0.3, 2.0), 3)
+            state["structure"]["cantilever"]["height"] = round(chance.uniform(8.0, 16.0), 3)
         times[kind].append(visitor.post(f"/api/{kind}", {"state": state})[1])
 
 

@@ -35,12 +35,15 @@ def checked_positive(name: str, value: float, unit: str, *, zero: bool = False, 
 
 
 def checked_in_range(
-    name: str, value: float, low: float, high: float, *, hint: str = "", field: str | None = None
+    name: str, value: float, low: float, high: float, *, closed: bool = False, hint: str = "", field: str | None = None
 ) -> float:
-    """Return `value` as a float in [low, high); `field` is the argument to which a `name` such as zeta[1] belongs."""
+    """Return `value` as a float in [low, high), or [low, high] if it is `closed`.
+
+    `field` is the argument to which a `name` such as zeta[1] belongs.
+    """
     number = _checked_number(name, value, "")
-    if not low <= number < high:
-        message = f"{name} must lie in [{low:g}, {high:g}), but {shown(value)} was given."
+    if not (low <= number < high or (closed and number == high)):
+        message = f"{name} must lie in [{low:g}, {high:g}{']' if closed else ')'}, but {shown(value)} was given."
         raise InputError(f"{message} {hint}".rstrip(), field=field or name)
     return number
 

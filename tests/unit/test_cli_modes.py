@@ -266,7 +266,7 @@ def test_figure_of_distributed_mass(name, tmp_path):
     ("arguments", "said"),
     [
         (["frame"], "frame is not a structure file: a name that ends in .toml is expected."),
-        ([STRUCTURE, "--modes", 7], "n_modes must be a whole number from 1 to 5, but 7 was given."),
+        ([STRUCTURE, "--modes", 7], "--modes must be a whole number from 1 to 5, but 7 was given."),
         ([STRUCTURE, "--structure", STRUCTURE], "Two structures were given"),
         (["--stories", 5], "The frame lacks --story-height, --story-mass"),
         ([STRUCTURE, "--force"], "--force was given without --out, to which it belongs."),

@@ -219,7 +219,7 @@ def test_other_faults_of_a_file_are_told_as_they_are(tmp_path):
     for name in ("empty.csv", "units=g, dt=0.01.csv"):
         path = tmp_path / name
         path.touch()
-        with pytest.raises(InputError, match=r"\.csv is empty\.$"):
+        with pytest.raises(InputError, match=r"\.csv is empty\."):
             find_motions([str(path)])
 
 

@@ -222,8 +222,8 @@ def test_records_keep_their_vertical_component(tmp_path):
         (("--periods", "0.2,x"), "--periods must be a number, but 'x' was given"),
         (("--periods", "2,0.2"), "periods must be a range such as (0.2, 2.0)"),
         (("--limits", "1"), "--limits needs 2 numbers separated by commas, but '1' was given"),
-        (("--limits", "2,1"), "scale_limits must be the smallest and the largest factor"),
-        (("--count", 99), "n must be at most 44, the number of records, but 99 was given"),
+        (("--limits", "2,1"), "--limits must be the smallest and the largest factor"),
+        (("--count", 99), "--count must be at most 44, the number of records, but 99 was given"),
         (("--force",), "--force was given without --out"),
     ],
 )

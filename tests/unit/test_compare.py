@@ -226,10 +226,11 @@ def test_the_command_tells_statistics_of_several_records(files):
     ("arguments", "said"),
     [
         (["a.toml", "el-centro-1940"], "2 to 6"),
-        (["a.toml", "a.toml", "el-centro-1940"], "twice"),
+        (["a.toml", "b.toml", "b.toml", "el-centro-1940"], "b.toml was given twice"),
         (["a.toml", "b.toml"], "No ground motion"),
         (["a.toml", "b.toml", "el-centro-1940", "--report", "x.txt"], "--report"),
         (["a.toml", "b.toml", "el-centro-1940", "--model", "XDOF"], "XDOF"),
+        (["a.toml", "b.toml", "el-centro-1940", "--model", "MDOF-S,2DOF-S"], "one model"),
     ],
 )
 def test_wrong_commands(files, arguments, said):

@@ -190,20 +190,21 @@ def test_a_record_that_overturns_keeps_no_limit():
 
 
 @pytest.mark.parametrize(
-    ("limits", "field"),
+    ("field", "value", "said"),
     [
-        ({"drift_ratio": 0.0}, "drift_ratio"),
-        ({"friction": -1.0}, "friction"),
-        ({"contact_ratio": 1.01}, "contact_ratio"),
-        ({"tendon_ratio": None}, "tendon_ratio"),
-        ({"breadth": "wide"}, "breadth"),
-        ({"seat_width": math.nan}, "seat_width"),
+        ("drift_ratio", 0.0, "positive"),
+        ("friction", -1.0, "positive"),
+        ("contact_ratio", 1.01, "[0, 1], but 1.01"),
+        ("tendon_ratio", None, "number"),
+        ("breadth", "wide", "number in m"),
+        ("seat_width", math.nan, "finite"),
     ],
 )
-def test_wrong_limits_are_refused(limits, field):
+def test_wrong_limits_are_refused(field, value, said):
     with pytest.raises(rf.InputError) as caught:
-        rf.CheckLimits(**limits)
+        rf.CheckLimits(**{field: value})
     assert caught.value.field == field
+    assert said in str(caught.value)
 
 
 @pytest.mark.parametrize("result", [None, 3.0, "run", lambda: rf.simulate(FRAME, PULSE, output="peaks")])

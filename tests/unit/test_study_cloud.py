@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import pickle
+import threading
 
 import numpy as np
 import pandas as pd
@@ -155,6 +156,23 @@ def test_size_of_the_chunks_changes_no_row(plan, size):
     one, two = (pa.concat_tables([p.chunk(n) for n in range(p.n_chunks)]) for p in (plan, other))
     assert one.equals(two)
     assert run_plan(plan, workers=1).equals(run_plan(other, workers=2))
+
+
+def test_threads_share_a_study_of_one_chunk():
+    meeting, threads = threading.Barrier(2), set()
+
+    def met(_):
+        if threading.get_ident() not in threads:  # alone, a thread would wait in vain
+            threads.add(threading.get_ident())
+            meeting.wait(60.0)
+        return 1.0
+
+    records = [rf.load_suite("fema-p695-far-field")[name] for name in ("FF-1-a", "FF-1-b", "FF-2-a", "FF-2-b")]
+    given = {"structures": {"A": rf.Frame(**FRAME), "B": rf.Frame(**FRAME)}, "records": records, "models": ["2DOF-S"]}
+    plan = rf.CloudStudy(**given, demands={"met": met}).plan()
+    assert plan.n_chunks == 1
+    shared = run_plan(plan, workers=2)
+    assert shared.drop(columns="met").equals(run_plan(rf.CloudStudy(**given).plan(), workers=1))
 
 
 def test_python_twin_gives_the_same_rows(table):

@@ -1,7 +1,7 @@
 """Stored studies of objects: structures, motions, grounds, elements and demands in the place of tables."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -9,6 +9,8 @@ import pytest
 
 import rockflex as rf
 from own_study import FRAME, OwnBar, Tower, own_ground, random_frame, roof
+from rockflex.kinds import KINDS
+from rockflex.study.design import stored_design_search
 
 SUITE = rf.load_suite("fema-p695-far-field")[:3]
 YIELDS = rf.YieldingStories(rf.Leaning(rf.Frame(**FRAME), 20e3), strengths=[300e3, 250e3, 140e3], post_yield_ratio=0.05)
@@ -30,6 +32,50 @@ def made(kind=rf.CloudStudy, **more):
 
 
 every_kind = pytest.mark.parametrize("kind", GIVEN, ids=lambda kind: kind.__name__)
+
+
+def interrupted(done, _total):
+    if done:
+        raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("searched", [False, True])
+def test_a_function_of_designs_resumes_its_folder(searched, tmp_path):
+    held, factors = rf.Restrained(rf.Frame(**FRAME), rf.Tendon(1e5, 1e6)), {"scales": [0.5, 1.0, 2.0, 4.0]}
+    space = rf.DesignSearch([0.8, 1.6], [0.5, 1.0], refinements=1, designs_per_refinement=2)
+    wanted = [rf.Requirement("overturning", 0.1, at=0.8), rf.Requirement(0.01, 0.2, at=0.4)]
+    hazard = rf.HazardCurve([0.1, 1.0], [0.1, 0.001])
+
+    def found(widths=(0.8, 1.2, 1.6), requirements=wanted, **more):
+        if not searched:
+            return rf.run_design(held, SUITE, np.array(widths), models=["2DOF-S", "MDOF-S"], **factors, **more)
+        unit = rf.DesignCost(1.0, 1e-6)
+        return rf.search_design(
+            held, SUITE, replace(space, half_widths=widths), requirements, unit, "2DOF-S", **factors, **more
+        )
+
+    whole, folder = found(demands={"roof": roof}), tmp_path / "study"
+    with pytest.raises(KeyboardInterrupt):
+        found(demands={"roof": roof}, folder=folder, progress=interrupted, workers=1)
+    kept = rf.StudyFolder.load(folder)
+    assert 0 < len(kept.missing()) < kept.n_chunks
+    told = []
+    resumed = found(demands={"roof": roof}, folder=folder, progress=lambda *now: told.append(now))
+    pd.testing.assert_frame_equal(resumed, whole)
+    assert told[1][0] > 0
+    assert kept.spec["study"] == "design"
+    with pytest.raises(rf.InputError, match=r"another study[\s\S]*half_widths"):
+        found((0.8, 1.7), demands={"roof": roof}, folder=folder)
+    if searched:
+        mixed = [wanted[0], rf.Requirement(0.01, 0.01, hazard=hazard)]
+        with pytest.raises(rf.InputError, match="requirements: a folder stores those of one measure"):
+            found(requirements=mixed, folder=tmp_path / "other")
+        assert stored_design_search(kept.spec) == (wanted, rf.DesignCost(1.0, 1e-6))
+        rate = [rf.Requirement(0.01, 0.01, hazard=hazard)]
+        pd.testing.assert_frame_equal(found(requirements=rate, folder=tmp_path / "rate"), found(requirements=rate))
+    else:
+        with pytest.raises(rf.InputError, match="no limits"):
+            list(KINDS["design"].figures(kept.spec, whole, "pgv", print))
 
 
 @every_kind

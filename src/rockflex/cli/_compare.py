@@ -77,6 +77,8 @@ def compare(
     from rockflex.response import DEMANDS, STATISTICS
     from rockflex.study import compare as run
 
+    if "," in model:
+        raise InputError(f"compare takes one model, but --model names {model}. Choose one of them.")
     page = None if report is None else checked_path_of_report(report, force=force)
     written = options.report_format(page, output_units, language, comma=decimal_comma)
     loaded, given, rest = load_alternatives(context, arguments or [], model)
@@ -151,7 +153,8 @@ def load_alternatives(
     if len(set(names)) < len(names):
         names = [str(file.with_suffix("")) for file in files]
     if len(set(names)) < len(names):
-        raise InputError(f"The file {files[0]} was given twice. Give each alternative once.")
+        twice = next(file for file in files if files.count(file) > 1)
+        raise InputError(f"The file {twice} was given twice. Give each alternative once.")
     own = {name: make_run_options(context, each)[0] for name, each in zip(names, loaded, strict=True)}
     options_of = ["impact", "initial", "ground", *(["bouc_wen"] if model.endswith("-BW") else [])]
     given: dict[str, Any] = {each: {name: getattr(own[name], each) for name in names} for each in options_of}

@@ -95,7 +95,7 @@ def modes(
     loaded = load_structure(path, flag_values(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
-        properties = properties.truncated(checked_whole_number("n_modes", n_modes, 1, properties.n_modes))
+        properties = properties.truncated(checked_whole_number("--modes", n_modes, 1, properties.n_modes))
     rows = _fixed_base_mode_rows(loaded, properties)
     lifted = _uplifted_mode_rows(properties)
     rocking = describe_rocking_properties(properties)

@@ -149,6 +149,15 @@ A file with the columns "period (s), sa (g)".
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
 _choice = partial(options.option, rich_help_panel="Choice")
+FLAGS = {
+    "n": "--count",
+    "periods": "--periods",
+    "scale_limits": "--limits",
+    "per_event": "--per-event",
+    "per_station": "--per-station",
+    "record_weight": "--record-weight",
+    "least_ratio": "--least",
+}
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",
@@ -214,17 +223,18 @@ def select(
     wanted = parse_target_spectrum(target, damping)
     low, high = parse_comma_separated_numbers("--limits", limits, 2, 2)
     found = find_motions(names, units, dt, on_error, vertical)
-    chosen = Suite(item.motion for item in found).select(
-        wanted,
-        count,
-        parse_comma_separated_numbers("--periods", periods, 1),
-        measure=_MEASURES[measure],
-        scale_limits=(low, high),
-        per_event=per_event,
-        per_station=per_station,
-        record_weight=record_weight,
-        least_ratio=least,
-    )
+    with options.naming_flags_in_errors(FLAGS):
+        chosen = Suite(item.motion for item in found).select(
+            wanted,
+            count,
+            parse_comma_separated_numbers("--periods", periods, 1),
+            measure=_MEASURES[measure],
+            scale_limits=(low, high),
+            per_event=per_event,
+            per_station=per_station,
+            record_weight=record_weight,
+            least_ratio=least,
+        )
     document: dict[str, Any] = {
         "versions": output.versions(),
         "options": {

@@ -238,4 +238,4 @@ def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> f
         tried += 1
         if perf_counter() - start > MAX_SAMPLE_TIME:
             break
-    return (perf_counter() - start) / tried * plan.n_units / min(threads, plan.n_chunks)
+    return (perf_counter() - start) / tried * plan.n_units / min(threads, plan.n_units)

@@ -349,6 +349,9 @@ def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
     if study.search is not None:
         _report_search(study, runs, found)
         return
+    if not study.limits:
+        found.remarks.append("the study has no limits: rf.design_table evaluates its runs")
+        return
     levels: list[float | None] = study.level if isinstance(study.level, list) else [study.level]
     at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
@@ -445,6 +448,11 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
         best = best_design(runs, *stored_design_search(spec))
         yield "design_search", lambda: plot.plot_design_search(best)
         return
+    if not spec["limits"]:
+        raise InputError(
+            "The study has no limits, whose probabilities a figure would show. Give its runs with a limit to "
+            "rf.design_table, and the table to rf.plot_design."
+        )
     targets = [target for _, _, target, _ in stored_design_limits(spec)]
     for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):
         stem = f"design_{'_'.join(limit_state_label(limit).split())}"

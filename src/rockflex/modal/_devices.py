@@ -160,7 +160,8 @@ STEELS: dict[str, Steel] = {
 
 B500B, B500C: EN 1992-1-1, Table C.1. 300E, 500E: AS/NZS 4671, Table 2. A706-60: ASTM A706 Grade 60, with the reduced
 ultimate strain of Caltrans' Seismic Design Criteria for bars up to No. 10. S235 to S355: EN 1993-1-1, Table 3.1, up to
-40 mm, with ε_u = 0.6 (1 - f_y/f_u) (Yun & Gardner 2017, doi 10.1016/j.jcsr.2017.01.024).
+40 mm, with ε_u = 0.6 (1 - f_y/f_u) (Yun & Gardner 2017, doi 10.1016/j.jcsr.2017.01.024). Not checked against the texts
+of these standards.
 """
 
 
@@ -210,7 +211,7 @@ def strand_tendon(
     L = checked_positive("length", length, "m")
     most = one.yield_force / one.breaking_force
     p = checked_in_range(
-        "prestress", prestress, 0.0, math.nextafter(most, 1.0), hint="It is a share of F_pk; the end is F_p0,1k/F_pk."
+        "prestress", prestress, 0.0, most, closed=True, hint="It is a share of F_pk; the end is F_p0,1k/F_pk."
     )
     rupture, axial = None, one.area * one.modulus
     if ultimate_strain is not None:

@@ -124,7 +124,8 @@ def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
         column = 1 if time == 0 else 0
         if labels and re.match("vel|dis", labels[column], re.IGNORECASE):
             raise InputError(
-                f"{file}: an acceleration is expected, but the column is labelled {shown(labels[column])}."
+                f"{file}: an acceleration is expected, but the column is labelled {shown(labels[column])}. "
+                "Give the file of the acceleration."
             )
         return ColumnRoles(time, (column,), None)
     raise InputError(

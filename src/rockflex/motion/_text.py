@@ -122,7 +122,7 @@ def text_lines(file: Path, content: bytes) -> list[str]:
     if text is None:
         raise InputError(f"{file} is a binary file; a record is expected as text (AT2, CSV or columns).")
     if not text.strip():
-        raise InputError(f"{file} is empty.")
+        raise InputError(f"{file} is empty. Give a file with a record, or copy it again.")
     return re.split("\r\n|\r|\n", text)
 
 

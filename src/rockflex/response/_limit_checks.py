@@ -96,7 +96,7 @@ class CheckLimits:
             number = checked_positive(each.name, value, unit)  # pyright: ignore[reportArgumentType]
             object.__setattr__(self, each.name, number)
         if self.contact_ratio is not None:
-            checked_in_range("contact_ratio", self.contact_ratio, 0.0, math.nextafter(1.0, 2.0))
+            checked_in_range("contact_ratio", self.contact_ratio, 0.0, 1.0, closed=True)
 
 
 @dataclass(frozen=True)

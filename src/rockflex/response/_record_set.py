@@ -64,8 +64,8 @@ def checked_rule(rule: object, n: int) -> Rule | None:
     asked = RULES[str(rule)]
     if n < asked.least:
         raise InputError(
-            f"{asked.source} asks for at least {asked.least} records, but {n} were given. Give more records, or "
-            "rule=None for their statistics alone.",
+            f"{asked.source} asks for at least {asked.least} records, but {number_with_noun(n, 'was', 'were')} given. "
+            "Give more records, or rule=None for their statistics alone.",
             field="rule",
         )
     return rule  # pyright: ignore[reportReturnType]

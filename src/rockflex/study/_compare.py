@@ -87,8 +87,8 @@ def compare(
     if not 2 <= len(structures) <= MAX_ALTERNATIVES:
         raise InputError(
             f"alternatives must be 2 to {MAX_ALTERNATIVES} structures, but "
-            f"{number_with_noun(len(structures), 'structure')} {'was' if len(structures) == 1 else 'were'} given. "
-            "Choose those that matter.",
+            f"{number_with_noun(len(structures), 'structure was', 'structures were')} given. "
+            f"{'Choose those that matter.' if structures[1:] else 'Give another one to compare it with.'}",
             field="alternatives",
         )
     names = tuple(ascii_uppercase[: len(structures)] if given is None else given)

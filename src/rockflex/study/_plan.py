@@ -2,18 +2,21 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, SupportsIndex
+from copy import copy
+from typing import TYPE_CHECKING, ClassVar, Self, SupportsIndex
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
-from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table
+from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table, joined_tables
 from rockflex.study._run_matrix import StudyMatrix, record_checksums
+from rockflex.study.parallel import map_runs_in_order
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 PER_CHUNK = 64  # runs of a chunk of functions such as `run_cloud`, so that a few hundred runs occupy many threads
+PIECES_PER_THREAD = 4  # of a chunk that several threads share, so that they end together
 
 
 class ChunkedPlan(ABC):
@@ -27,6 +30,9 @@ class ChunkedPlan(ABC):
 
     units: ClassVar[str] = "runs"
     """The name of the units, in the plural."""
+
+    threads: int = 1
+    """Number of threads that share a chunk, see `on_threads`."""
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
         check_horizontal_component(*motions)
@@ -84,7 +90,16 @@ class ChunkedPlan(ABC):
     def chunk(self, number: SupportsIndex) -> ArrowTable:
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
-        return arrow_table(self.results(units), self.columns)
+        size = len(units) if self.threads == 1 else -(-len(units) // (PIECES_PER_THREAD * self.threads))
+        pieces = [units[first : first + size] for first in range(0, len(units), size)]
+        found = map_runs_in_order(self.results, pieces, self.threads)
+        return arrow_table(found[0] if len(found) == 1 else joined_tables(found), self.columns)
+
+    def on_threads(self, threads: int) -> Self:
+        """Return the plan whose every chunk is computed on several threads, for studies of few chunks."""
+        other = copy(self)
+        other.threads = threads
+        return other
 
 
 class CrossPlan(ChunkedPlan):

@@ -51,9 +51,14 @@ def arrow_table(values: Table, columns: Columns, missing: "NDArray[np.bool_] | N
     return pa.table({name: column(values.get(name, absent), kind) for name, kind in columns.items()})
 
 
-def joined_tables(tables: Sequence[Mapping[str, list[Any]]]) -> dict[str, list[Any]]:
-    """Return the columns of tables, one after another."""
-    return {name: [value for each in tables for value in each[name]] for name in tables[0]}
+def joined_tables(tables: Sequence[Table]) -> dict[str, list[Any]]:
+    """Return the columns of tables, one after another; None where a table lacks a column, as of stories that yield."""
+    rows = [len(next(iter(each.values()), ())) for each in tables]
+    names = dict.fromkeys(name for each in tables for name in each)
+    return {
+        name: [value for each, count in zip(tables, rows, strict=True) for value in each.get(name, [None] * count)]
+        for name in names
+    }
 
 
 def tables_to_dataframe(*tables: ArrowTable) -> "pd.DataFrame":

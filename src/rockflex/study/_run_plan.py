@@ -13,7 +13,7 @@ from rockflex.engine import VECTOR_LEVEL
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._result_tables import ArrowTable, tables_to_dataframe
 from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
-from rockflex.study.parallel import NumberedChunks, map_chunks_on_dask, map_runs
+from rockflex.study.parallel import NumberedChunks, map_chunks_on_dask, map_runs, worker_count
 from rockflex.study.progress import Begin, ProgressChoice, reporting_progress
 from rockflex.study.spec import StudySpec
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 
 Result = TypeVar("Result")
+MIN_CHUNKS_PER_THREAD = 2  # with fewer, the threads share one chunk after the other, and none is idle at the end
 LIBRARIES = ("rockflex", "numpy", "scipy")  # those that affect the numbers
 
 
@@ -142,15 +143,21 @@ def _compute_chunks(
     begin: Begin,
 ) -> None:
     """Compute chunks round by round; `keep` takes each one when it is done, and counts its rows."""
-    told = begin(numbers)
+    told, threads = begin(numbers), worker_count(workers)
     for place, each in enumerate(plan.rounds):
         if not any(number >= each.start for number in numbers):
             break
         if place:
             plan = plan.next_round(so_far())
-        work, missing = sent(plan), [number for number in numbers if number in each]
+        missing = [number for number in numbers if number in each]
+        shared = dask is None and len(missing) < MIN_CHUNKS_PER_THREAD * threads
+        work = sent(plan.on_threads(threads if shared else 1))
         # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-        coming = map_chunks(work.chunk, missing, workers) if dask is None else map_chunks_on_dask(work, missing, dask)
+        coming = (
+            map_chunks(work.chunk, missing, 1 if shared else workers)
+            if dask is None
+            else map_chunks_on_dask(work, missing, dask)
+        )
         with closing(coming):
             for number, result in coming:
                 told(number, keep(number, result))

@@ -221,8 +221,8 @@ def checked_report_path(name: str, path: str | Path) -> Path:
         )
     if target.suffix.lower() not in SUFFIXES:
         raise InputError(
-            f"A report is a page of HTML, a PDF or a document of Word, but the {name} {shown(str(target))} ends in "
-            f"{shown(target.suffix)}. Let it end in .html, .pdf or .docx.",
+            f"{name} must end in .html, .pdf or .docx, a page of HTML, a PDF or a document of Word, but "
+            f"{shown(str(target))} was given.",
             field="path",
         )
     needed = {".pdf": chromium, ".docx": word_module}.get(target.suffix.lower())

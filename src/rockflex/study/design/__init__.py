@@ -1,12 +1,13 @@
 """Design of a base: its width, its tendons and its dissipators (Section 4.1)."""
 
 from rockflex.study.design._best_design import BestDesign, InterpolatedMargins, best_design, trade_off
-from rockflex.study.design._design_search import DesignSearchPlan, search_design
+from rockflex.study.design._design_search import DesignSearchPlan
 from rockflex.study.design._design_study import (
     DesignPlan,
     DesignStudy,
     design_tables_by_limit,
     run_design,
+    search_design,
     stored_design_limits,
     stored_design_search,
 )

@@ -3,32 +3,27 @@
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from itertools import accumulate, pairwise, product
-from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex.fragility import check_limit_columns
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
-from rockflex.study._plan import PER_CHUNK, ChunkedPlan
+from rockflex.study._arguments import checked_scale_factors
+from rockflex.study._plan import ChunkedPlan
 from rockflex.study._result_tables import Columns, Table
-from rockflex.study._run_matrix import Demands, Run, StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study._run_plan import run_plan
+from rockflex.study._run_matrix import Run, StudyMatrix, check_base_can_lift
 from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, facts_of_design, total_dissipator_force
 from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
     DesignCost,
     Requirement,
-    checked_requirements,
     requirement_margins,
     requirement_values,
 )
-from rockflex.study.progress import ProgressChoice
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -274,81 +269,3 @@ class DesignSearchPlan(ChunkedPlan):
     def check_work(self) -> None:
         """Refuse a search if every run of its first round exceeds its work limit."""
         self._matrix.check_work(self._runs_of(range(len(self.points))))
-
-
-def search_design(
-    structure: RockingStructure | RockingProperties,
-    motions: Motions,
-    search: DesignSearch,
-    requirements: Sequence[Requirement],
-    cost: DesignCost,
-    model: str | Model = "MDOF-S",
-    scales: float | Sequence[float] = 1.0,
-    free_vibration: float | Literal["settle"] = "settle",
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
-    demands: Demands | None = None,
-    dask: str | None = None,
-) -> "pd.DataFrame":
-    """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
-
-    All combinations of the values of the search are run under all motions, then the designs of each refinement; the
-    same call always runs the same designs. `best_design` evaluates the table.
-
-    Parameters
-    ----------
-    structure
-        A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
-    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, demands, dask
-        As in `run_cloud`; a `DesignStudy` with a `search` stores its runs.
-    search
-        The values of the variables, and the number of refinements.
-    requirements
-        Limits with their targets, which all must be met.
-    cost
-        Unit costs of the width and of the forces.
-    model
-        One model, as in `simulate`.
-    progress
-        As in `run_cloud`, counted in designs.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row per run, in the order of the search. The columns are those of `run_cloud`, where `structure` numbers the
-        designs, and after it: `round`, 0 for the values given; `half_width` (m), `tendon_factor`, `dissipator_factor`;
-        `aspect_ratio` = h*_1/B; `prestress` = ΣF_0 and `dissipator_force` = ΣF_y in N; `prestress_ratio` =
-        ΣF_0/(m_tot g); `resisting_moment` (M_r in N m).
-
-    Raises
-    ------
-    InputError
-        If the structure lacks elements for the factors, a design cannot be built, the model's base cannot lift, or as
-        in `run_cloud`.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
-    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
-    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
-    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
-    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
-    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
-    >>> runs.groupby("round")["structure"].nunique().tolist()
-    [9, 8]
-    """
-    given: Any = scales
-    matrix = study_matrix(
-        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
-        demands=demands,
-    )  # fmt: skip
-    wanted = checked_requirements(requirements)
-    space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
-    plan = DesignSearchPlan(matrix, space, wanted, unit_costs, given, PER_CHUNK)
-    return run_plan(plan, workers, progress, dask=dask)

@@ -2,19 +2,20 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from rockflex._checks import checked_in_range, checked_positive
+from rockflex._checks import checked_in_range, checked_instance, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
 from rockflex._shown import shown
 from rockflex.fragility import HazardCurve, check_limit_columns
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw
+from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
 from rockflex.study._plan import PER_CHUNK
@@ -139,6 +140,8 @@ class DesignStudy(StructuresStudySpec):
     With a table `search`, width, tendons and dissipators are searched together for the cheapest design that meets all
     requirements; the columns are then those of `search_design`, and `best_design` evaluates them.
 
+    With ``limits = []`` the study only stores the runs, and needs no level, hazard or target.
+
     Examples
     --------
     >>> import rockflex as rf
@@ -164,7 +167,8 @@ class DesignStudy(StructuresStudySpec):
     )
     scales: Factors = Field([1.0])
     limits: Annotated[list[float | str], validator_of_check(lambda limits: [*map(check_design_limit, limits)])] = Field(
-        ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
+        ["overturning"],
+        description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]; [] to store runs alone',
     )
     measure: Annotated[str, validator_of_check(check_measure_of_record_alone)] = Field(
         "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1_5"'
@@ -202,7 +206,7 @@ class DesignStudy(StructuresStudySpec):
     def _question(self) -> "DesignStudy":
         if len(self.structures) != 1:
             raise InputError(f"structures: a design study has one structure, but {len(self.structures)} were given.")
-        if (self.level is None) == (self.hazard is None):
+        if self.limits and (self.level is None) == (self.hazard is None):
             raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
         if self.hazard is not None:
             HazardCurve(**self.hazard.model_dump())
@@ -327,6 +331,7 @@ def run_design(
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
     demands: Demands | None = None,
+    folder: str | Path | None = None,
     dask: str | None = None,
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
@@ -345,7 +350,10 @@ def run_design(
     tendons
         Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
     models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, progress, demands, dask
-        As in `run_cloud`; a `DesignStudy` stores its runs.
+        As in `run_cloud`.
+    folder
+        As in `run_cloud`; it is the folder of the `DesignStudy` of these arguments with ``limits=[]`` and
+        ``runs_per_chunk=64``.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
         metre below it. Default: 0, a constant base mass.
@@ -385,6 +393,112 @@ def run_design(
         [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
         demands=demands,
     )  # fmt: skip
-    designs = designs_of_structure(matrix.structures[0], half_widths, list(tendons), base_mass_per_width)
+    levels = list(tendons)
+    designs = designs_of_structure(matrix.structures[0], half_widths, levels, base_mass_per_width)
     plan = DesignPlan(matrix, designs, given, PER_CHUNK)
-    return run_plan(plan, workers, progress, dask=dask)
+
+    def study() -> DesignStudy:
+        return DesignStudy.of_matrix(
+            structure, matrix, half_widths=checked_half_widths(half_widths), tendons=levels, limits=[],
+            base_mass_per_width=base_mass_per_width, scales=plan.scales, runs_per_chunk=PER_CHUNK,
+        )  # fmt: skip
+
+    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
+
+
+def search_design(
+    structure: RockingStructure | RockingProperties,
+    motions: Motions,
+    search: DesignSearch,
+    requirements: Sequence[Requirement],
+    cost: DesignCost,
+    model: str | Model = "MDOF-S",
+    scales: float | Sequence[float] = 1.0,
+    free_vibration: float | Literal["settle"] = "settle",
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
+    progress: ProgressChoice = None,
+    demands: Demands | None = None,
+    folder: str | Path | None = None,
+    dask: str | None = None,
+) -> "pd.DataFrame":
+    """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
+
+    All combinations of the values of the search are run under all motions, then the designs of each refinement; the
+    same call always runs the same designs. `best_design` evaluates the table.
+
+    Parameters
+    ----------
+    structure
+        A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
+    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, demands, dask
+        As in `run_cloud`.
+    search
+        The values of the variables, and the number of refinements.
+    requirements
+        Limits with their targets, which all must be met.
+    cost
+        Unit costs of the width and of the forces.
+    model
+        One model, as in `simulate`.
+    progress
+        As in `run_cloud`, counted in designs.
+    folder
+        As in `run_cloud`; it is the folder of the `DesignStudy` with a `search` of these arguments and
+        ``runs_per_chunk=64``. Its requirements have one measure, and either levels or one hazard curve.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run, in the order of the search. The columns are those of `run_cloud`, where `structure` numbers the
+        designs, and after it: `round`, 0 for the values given; `half_width` (m), `tendon_factor`, `dissipator_factor`;
+        `aspect_ratio` = h*_1/B; `prestress` = ΣF_0 and `dissipator_force` = ΣF_y in N; `prestress_ratio` =
+        ΣF_0/(m_tot g); `resisting_moment` (M_r in N m).
+
+    Raises
+    ------
+    InputError
+        If the structure lacks elements for the factors, a design cannot be built, the model's base cannot lift, or as
+        in `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> runs.groupby("round")["structure"].nunique().tolist()
+    [9, 8]
+    """
+    given: Any = scales
+    matrix = study_matrix(
+        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
+        demands=demands,
+    )  # fmt: skip
+    wanted = checked_requirements(requirements)
+    space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
+    plan = DesignSearchPlan(matrix, space, wanted, unit_costs, given, PER_CHUNK)
+
+    def study() -> DesignStudy:
+        first, table = wanted[0], as_json_value(space) | {"cost": asdict(unit_costs)}
+        if any((each.measure, each.hazard) != (first.measure, first.hazard) for each in wanted):
+            raise InputError(
+                "requirements: a folder stores those of one measure, with levels or with one hazard curve. Leave out "
+                "folder, or search with the others alone."
+            )
+        return DesignStudy.of_matrix(
+            structure, matrix, half_widths=table.pop("half_widths"), scales=plan.scales,
+            base_mass_per_width=table.pop("base_mass_per_width"), search=table,
+            limits=[each.limit for each in wanted], target=[each.target for each in wanted], measure=first.measure,
+            level=[each.at for each in wanted] if first.hazard is None else None, hazard=first.hazard,
+            runs_per_chunk=PER_CHUNK,
+        )  # fmt: skip
+
+    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
