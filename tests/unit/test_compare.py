@@ -90,6 +90,14 @@ def test_a_rotation_is_left_only_at_rest():
     assert settled.demands().loc["residual_rotation", "A"] == pytest.approx(left, rel=1e-9)
 
 
+def test_what_rounding_leaves_is_no_demand_to_compare_with():
+    """Springs without fuses bring the base back: what is left there is rounding, and no percentage of it means much."""
+    fused = rf.Restrained(SLENDER, rf.YieldingDissipator(2e7, 150e3, 0.02, 0.3))
+    settled = rf.compare([SLENDER, fused], PULSES[2], ground=BED, free_vibration="settle")
+    assert settled.demands().loc["residual_rotation", "A"] == 0.0 < settled.demands().loc["residual_rotation", "B"]
+    assert math.isnan(settled.differences().loc["residual_rotation", "B"])
+
+
 def test_overturned_runs_count_as_infinite():
     both = rf.compare([SLENDER, WIDE], [PULSES[0], PULSES[0], PULSES[3].scaled(20.0)], free_vibration=5.0)
     assert both.overturned == (1, 1)

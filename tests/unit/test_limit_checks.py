@@ -75,6 +75,16 @@ def test_the_resultant_reaches_the_edge_as_the_base_lifts():
     assert 0.0 <= min(lengths) < 0.1
 
 
+def test_friction_limits_the_moment_of_a_block_that_slides():
+    """The resultant leans by μ, however strong the ground shakes: c = B - μ h."""
+    run = rf.simulate(BLOCK, rf.one_sine_pulse(2.0, 1.0), "rigid", ground=rf.Ground(friction=0.1))
+    assert (run.status, run.max_slip > 0.0) == ("no_uplift", True)
+    edge = BLOCK.half_width - 0.1 * BLOCK.l0r / BLOCK.m_tot
+    found = rows(run, bearing_pressure=1e5, contact_ratio=0.5, breadth=2.0)
+    assert found["contact length"].demand == pytest.approx(3.0 * edge / (2.0 * BLOCK.half_width), rel=1e-12)
+    assert found["bearing pressure"].demand == pytest.approx(BLOCK.m_tot * G / (2.0 * 2.0 * edge), rel=1e-12)
+
+
 def test_contact_on_springs_is_that_of_its_edges():
     bed = rf.winkler_bed(FRAME.half_width, 3.0, 4e7)
     run = rf.simulate(FRAME, PULSE, "2DOF-S", ground=rf.Ground(springs=bed, base_inertia=1e5))
