@@ -128,6 +128,18 @@ def test_checks_of_elements_by_hand():
     assert found["rupture"].ratio == pytest.approx(fuse[1] / 0.02, rel=1e-14)
 
 
+def test_the_drift_of_a_light_column_is_the_slope_below_its_tip():
+    """A cantilever under a force at its tip: u = u_top (3 s² - s³)/2 at s = z/h, here between s = 0.95 and 1."""
+    column = rf.CantileverWithTipMass(
+        height=10.0, tip_mass=50e3, mass_per_length=1e-3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0,
+        damping_ratio=0.02, n_modes=1,
+    )  # fmt: skip
+    run = rf.simulate(column, PULSE, "2DOF-S")
+    share = 1.0 - (3.0 * 0.95**2 - 0.95**3) / 2.0
+    found = rows(run, drift_ratio=0.005)["story drift"]
+    assert found.demand == pytest.approx(share * run.max_top_displacement / 0.5, rel=1e-6)  # of the column's mass, 2e-7
+
+
 def test_a_base_that_slides_is_checked_for_its_slip():
     run = rf.simulate(FRAME, PULSE, "2DOF-S", ground=rf.Ground(friction=0.15))
     found = rows(run, slip=0.01, friction=0.3)

@@ -340,10 +340,11 @@ def _drift_ratio(run: Response, history: History, _: CheckLimits) -> float:
     floors = history.model.properties.floors
     if run.floors is None or floors is None:
         raise MissingQuantityError(translated("the structure has no floors"))
-    heights = np.diff(floors.heights, prepend=0.0)
+    first = int(floors.heights[0] == 0.0)  # stations of a distributed mass begin with the base
+    heights = np.diff(floors.heights, prepend=0.0)[first:]
     if heights.min() <= 0.0:
         raise MissingQuantityError(translated("the floors do not stand one above another, so stories have no height"))
-    return float((run.floors.story_drift / heights).max())
+    return float((run.floors.story_drift[first:] / heights).max())
 
 
 def _tendon_ratio(run: Response, history: History, _: CheckLimits) -> float:
