@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex.cli import app
+from rockflex.plot import draw_alternatives
 
 SLENDER, WIDE = (make_frame(n_stories=2, period=0.5, aspect_ratio=ratio) for ratio in (8.0, 5.0))
 TIED = rf.Restrained(SLENDER, rf.Tendon(1e5, 5e6, yield_force=4e5))
@@ -90,6 +91,14 @@ def test_a_rotation_is_left_only_at_rest():
     assert settled.demands().loc["residual_rotation", "A"] == pytest.approx(left, rel=1e-9)
 
 
+def test_what_rounding_leaves_is_no_demand_to_compare_with():
+    """Springs without fuses bring the base back: what is left there is rounding, and no percentage of it means much."""
+    fused = rf.Restrained(SLENDER, rf.YieldingDissipator(2e7, 150e3, 0.02, 0.3))
+    settled = rf.compare([SLENDER, fused], PULSES[2], ground=BED, free_vibration="settle")
+    assert settled.demands().loc["residual_rotation", "A"] == 0.0 < settled.demands().loc["residual_rotation", "B"]
+    assert math.isnan(settled.differences().loc["residual_rotation", "B"])
+
+
 def test_overturned_runs_count_as_infinite():
     both = rf.compare([SLENDER, WIDE], [PULSES[0], PULSES[0], PULSES[3].scaled(20.0)], free_vibration=5.0)
     assert both.overturned == (1, 1)
@@ -140,6 +149,22 @@ def test_the_figure_overlays_the_alternatives(several):
     np.testing.assert_array_equal(lines["tied"].get_ydata(), run.rotation)
     with pytest.raises(rf.InputError, match="Comparison"):
         rf.plot_comparison(run)
+
+
+@pytest.mark.parametrize(
+    ("units", "size", "name"),
+    [("kip-in", 1.0, "rad"), ("kN", 1e-3, "mrad"), (None, 1e-3, "mrad")],
+)
+def test_the_drawn_alternatives_tell_their_rotation_in_the_units_of_the_report(one, units, size, name):
+    with rf.figure_style(units=units):
+        drawn = draw_alternatives(one, width=150.0, height=48.0)
+    (axes,) = drawn.axes
+    told = [text.get_text().split() for text in axes.texts if text.get_text().startswith("θ = ")]
+    turns = [run.at(max(one.responses, key=lambda it: it.max_rotation).time_of_max_rotation).rotation[0]
+             for run in one.responses]  # fmt: skip
+    assert [each[3] for each in told] == [name, name]
+    found = [float(each[2].replace("−", "-")) * size for each in told]
+    np.testing.assert_allclose(found, turns, rtol=0.0, atol=5.1e-5)  # the last digit
 
 
 def test_the_report_has_all_alternatives(several, one, tmp_path):

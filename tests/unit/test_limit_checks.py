@@ -75,6 +75,16 @@ def test_the_resultant_reaches_the_edge_as_the_base_lifts():
     assert 0.0 <= min(lengths) < 0.1
 
 
+def test_friction_limits_the_moment_of_a_block_that_slides():
+    """The resultant leans by μ, however strong the ground shakes: c = B - μ h."""
+    run = rf.simulate(BLOCK, rf.one_sine_pulse(2.0, 1.0), "rigid", ground=rf.Ground(friction=0.1))
+    assert (run.status, run.max_slip > 0.0) == ("no_uplift", True)
+    edge = BLOCK.half_width - 0.1 * BLOCK.l0r / BLOCK.m_tot
+    found = rows(run, bearing_pressure=1e5, contact_ratio=0.5, breadth=2.0)
+    assert found["contact length"].demand == pytest.approx(3.0 * edge / (2.0 * BLOCK.half_width), rel=1e-12)
+    assert found["bearing pressure"].demand == pytest.approx(BLOCK.m_tot * G / (2.0 * 2.0 * edge), rel=1e-12)
+
+
 def test_contact_on_springs_is_that_of_its_edges():
     bed = rf.winkler_bed(FRAME.half_width, 3.0, 4e7)
     run = rf.simulate(FRAME, PULSE, "2DOF-S", ground=rf.Ground(springs=bed, base_inertia=1e5))
@@ -116,6 +126,18 @@ def test_checks_of_elements_by_hand():
     assert found["tendon stress"].ok == (tendon[0] <= 130e3)
     assert found["fuse strain"].ratio == pytest.approx(fuse[1] / 0.5 / 0.03, rel=1e-14)
     assert found["rupture"].ratio == pytest.approx(fuse[1] / 0.02, rel=1e-14)
+
+
+def test_the_drift_of_a_light_column_is_the_slope_below_its_tip():
+    """A cantilever under a force at its tip: u = u_top (3 s² - s³)/2 at s = z/h, here between s = 0.95 and 1."""
+    column = rf.CantileverWithTipMass(
+        height=10.0, tip_mass=50e3, mass_per_length=1e-3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0,
+        damping_ratio=0.02, n_modes=1,
+    )  # fmt: skip
+    run = rf.simulate(column, PULSE, "2DOF-S")
+    share = 1.0 - (3.0 * 0.95**2 - 0.95**3) / 2.0
+    found = rows(run, drift_ratio=0.005)["story drift"]
+    assert found.demand == pytest.approx(share * run.max_top_displacement / 0.5, rel=1e-6)  # of the column's mass, 2e-7
 
 
 def test_a_base_that_slides_is_checked_for_its_slip():

@@ -25,10 +25,10 @@ class Place(TypedDict, total=False):
 
 def _checked_ultimate_strain(given: float, yields: float) -> float:
     strain = checked_positive("ultimate_strain", given, "")
-    if strain <= yields:
+    if not yields < strain < 1.0:
         raise InputError(
-            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, but {shown(given)} was given. 5 % is "
-            "0.05.",
+            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, and below 1, but {shown(given)} was "
+            "given. 5 % is 0.05.",
             field="ultimate_strain",
         )
     return strain

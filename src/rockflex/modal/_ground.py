@@ -346,15 +346,11 @@ def winkler_bed(
     modulus = checked_positive("subgrade_modulus", subgrade_modulus, "N/m³")
     total = checked_positive("damping", damping, "N s/m", zero=True)
     ratio = checked_positive("end_ratio", end_ratio, "times the stiffness of the rest")
-    shift = checked_finite("eccentricity", eccentricity, "m")
+    shift = _checked_shift(eccentricity, B)
     zone = checked_in_range(
         "end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them."
     )
     count = checked_whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
-    if not abs(shift) < B:
-        raise InputError(
-            f"eccentricity must be less than half_width {B:g} m, but {shift:g} m was given.", field="eccentricity"
-        )
     edges = _spring_strip_edges(B, zone, count)
     middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
     stiffness = modulus * across * widths * np.where(np.abs(middles) > B - zone, ratio, 1.0)
@@ -507,7 +503,7 @@ def gazetas_bed(
         "breadth/(2 half_width)", across / (2.0 * B), 0.05, 20.0, field="breadth", hint="Check their units, m."
     )
     modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
-    poisson = _checked_poisson_ratio(poisson_ratio)
+    poisson, shift = _checked_poisson_ratio(poisson_ratio), _checked_shift(eccentricity, B)
     L, l = max(B, across / 2.0), min(B, across / 2.0)  # noqa: E741
     inertia = across * (2.0 * B) ** 3 / 12.0
     shape = 3.0 * (L / l) ** 0.15 if L == B else (L / l) ** 0.25 * (2.4 + 0.5 * l / L)
@@ -520,12 +516,12 @@ def gazetas_bed(
             )
         arm = min(math.sqrt(rotation / heave), B)
         stiffness, area = rotation / (2.0 * arm**2), across * B
-        springs = Springs([-arm - eccentricity, arm - eccentricity], stiffness, 0.0, area)
+        springs = Springs([-arm - shift, arm - shift], stiffness, 0.0, area)
     else:
         zone = 0.3 * B if end_zone is None else checked_positive("end_zone", end_zone, "m")
-        even = winkler_bed(B, across, heave / (2.0 * B * across), n=n, end_zone=zone, eccentricity=eccentricity)
-        share = even.stiffness * (even.positions + eccentricity) ** 2
-        ends = np.abs(even.positions + eccentricity) > B - zone
+        even = winkler_bed(B, across, heave / (2.0 * B * across), n=n, end_zone=zone, eccentricity=shift)
+        share = even.stiffness * (even.positions + shift) ** 2
+        ends = np.abs(even.positions + shift) > B - zone
         ratio = (rotation - share[~ends].sum()) / share[ends].sum()
         springs = Springs(even.positions, even.stiffness * np.where(ends, ratio, 1.0), 0.0, even.area)
     if density is None or springs.area is None:
@@ -533,6 +529,15 @@ def gazetas_bed(
     soil = checked_positive("density", density, "kg/m³")
     wave = 3.4 * math.sqrt(modulus / soil) / (math.pi * (1.0 - poisson))
     return Springs(springs.positions, springs.stiffness, soil * wave * springs.area, springs.area)
+
+
+def _checked_shift(eccentricity: float, B: float) -> float:
+    shift = checked_finite("eccentricity", eccentricity, "m")
+    if not abs(shift) < B:
+        raise InputError(
+            f"eccentricity must be less than half_width {B:g} m, but {shift:g} m was given.", field="eccentricity"
+        )
+    return shift
 
 
 def _checked_poisson_ratio(given: float) -> float:

@@ -93,10 +93,11 @@ class Comparison(Value):
         fell = self.runs["status"].eq("overturned").to_numpy(bool)
         found: dict[str, list[float]] = {}
         for demand in COMPARED_DEMANDS:
-            values = self.runs[demand].to_numpy(float)
-            if not np.any(np.abs(values) > _NONE):  # nor where all are missing
+            values = np.abs(self.runs[demand].to_numpy(float))
+            if not np.any(values > _NONE):  # nor where all are missing
                 continue
-            counted = np.where(fell, np.inf, np.abs(values)).reshape(len(self.names), -1)
+            known = np.where(values <= _NONE, 0.0, values)  # no demand to divide by
+            counted = np.where(fell, np.inf, known).reshape(len(self.names), -1)
             found[demand] = [_statistic_of(row, statistic) for row in counted]
         return pd.DataFrame.from_dict(found, orient="index", columns=list(self.names))
 

@@ -340,10 +340,11 @@ def _drift_ratio(run: Response, history: History, _: CheckLimits) -> float:
     floors = history.model.properties.floors
     if run.floors is None or floors is None:
         raise MissingQuantityError(translated("the structure has no floors"))
-    heights = np.diff(floors.heights, prepend=0.0)
+    first = int(floors.heights[0] == 0.0)  # stations of a distributed mass begin with the base
+    heights = np.diff(floors.heights, prepend=0.0)[first:]
     if heights.min() <= 0.0:
         raise MissingQuantityError(translated("the floors do not stand one above another, so stories have no height"))
-    return float((run.floors.story_drift / heights).max())
+    return float((run.floors.story_drift[first:] / heights).max())
 
 
 def _tendon_ratio(run: Response, history: History, _: CheckLimits) -> float:
@@ -389,7 +390,9 @@ def _distance_to_edge(history: History) -> tuple[Array, Array]:
             translated("ties to the ground carry a part of the moment; give simulate a Ground with springs")
         )
     force = history.vertical_reaction
-    inertia = p.l0r * history.ground_acceleration + history.modal_acceleration @ (p.effective_mass * p.effective_height)
+    moved = history.modal_acceleration
+    base = (history.horizontal_reaction - moved @ p.effective_mass) / p.horizontal_mass  # a, and that of sliding
+    inertia = p.l0r * base + moved @ (p.effective_mass * p.effective_height)
     places = np.array([each.position for each in p.elements])
     place = (history.element_force @ places - inertia) / np.where(force > 0.0, force, math.inf)
     return np.maximum(np.minimum(p.pivot(1).arm - place, p.pivot(-1).arm + place), 0.0), force

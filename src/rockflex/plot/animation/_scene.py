@@ -207,6 +207,7 @@ class StructurePanel:
         amplification: float,
     ) -> None:
         self._timing, self._curves, self._poses = timing, curves, poses
+        self._turn = figures.axis_unit("rotation", usual="mrad")
         width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
         axes.set(xlim=(0.0, width), ylim=(0.0, height))
         cell = width / len(curves)
@@ -255,8 +256,9 @@ class StructurePanel:
             structure.show(frame)
             text, color = structure_state_text(curve, poses, frame, time)
             state.set(text=text, color=color)
-            rotation = f"{1e3 * poses.rotation[frame]:.2f}".replace("-", "−")
-            number.set(text=f"θ = {rotation} mrad" if poses.lifts else "")
+            digits = 2 if self._turn.name == "mrad" else 4
+            rotation = f"{poses.rotation[frame] / self._turn.size:.{digits}f}".replace("-", "−")
+            number.set(text=f"θ = {rotation} {self._turn.name}" if poses.lifts else "")
 
 
 def _animation_scales_text(amplification: float, speed: float) -> str:
