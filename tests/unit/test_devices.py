@@ -179,6 +179,7 @@ def test_dashpots_radiate_from_the_area():
             "ultimate_strain",
         ),
         (lambda: rf.bar_fuse(1, 0.0, 0.5, "B500B"), "positive", "diameter"),
+        (lambda: rf.bar_fuse(1, 25, 0.5, "B500B"), "in m", "diameter"),
         (lambda: rf.bar_fuse(1, 0.02, math.inf, "B500B"), "finite", "length"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "steel"), "B500B", "steel"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=0.001), "0.0025", "ultimate_strain"),

@@ -239,8 +239,8 @@ def test_exponentials_are_met_exactly():
             "It does not fall everywhere: it rises between B = 2 and 3 m. The widest base, B = 3 m, has 0.2. Narrower "
             "bases meet it, from B = 2 m.",
         ),
-        ([0.4, math.nan, 0.1], 3.0, "met", True, "1 of 3 bases have no value and were left out."),
-        ([math.nan], math.nan, "not met", True, "1 of 1 bases have no value and were left out."),
+        ([0.4, math.nan, 0.1], 3.0, "met", True, "Left out for want of a value: 1 of 3 bases."),
+        ([math.nan], math.nan, "not met", True, "Left out for want of a value: 1 of 1 bases."),
     ],
 )
 def test_what_is_said_of_a_width(values, expected, outcome, monotone, notes):

@@ -289,6 +289,25 @@ def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
     assert list(client.refused("/api/state", state | {"language": "la"})) == ["language"]
 
 
+@pytest.mark.web
+def test_reports_are_printed(client, monkeypatch) -> None:
+    if not json.loads(client.request("/api/about")[2])["pdf"]:
+        pytest.skip("no browser that prints")
+    other = {"name": "A", "structure": PRESETS[1]["structure"], "models": ["MDOF-S"]}
+    state = client.state(alternatives=[other])
+    for what in ("report", "comparison"):
+        name, content = client.download(f"/api/file/{what}-pdf", state)
+        assert (name, content[:5]) == (f"{what}.pdf", b"%PDF-")
+    suites = {"record_set": {"suites": ["fema-p695-near-field-pulse"]}}
+    token = client.ask("/api/study/record_set", state | suites)["token"]
+    client.wait("record_set", token, state | suites)
+    name, content = client.download(f"/api/study/record_set/{token}/report-pdf", state | suites)
+    assert (name, content[:5]) == ("report.pdf", b"%PDF-")
+    assert client.post("/api/file/figure-pdf", {"state": state})[0] == 404
+    monkeypatch.setenv("ROCKFLEX_BROWSER", "/nowhere/chromium")
+    assert "ROCKFLEX_BROWSER" in client.made("report-pdf", state)["errors"][""]
+
+
 def test_figures_have_the_units_of_the_page(client) -> None:
     found = {}
     for units in ("kip-in", "SI"):

@@ -251,7 +251,7 @@ def bar_fuse(
     n
         Number of bars side by side, from 1.
     diameter, length
-        d and L in m of the part that yields, turned down or unbonded.
+        d and L in m of the part that yields, turned down or unbonded; d below L.
     steel
         A name in `STEELS`, such as ``"B500B"``, or a `Steel`, with mean values for instance.
     tension_only
@@ -275,8 +275,13 @@ def bar_fuse(
     (314159, 251327412, 0.0042, 0.025)
     """
     count, metal = checked_whole_number("n", n, 1, _MOST), _named("steel", steel, Steel, STEELS)
-    area = count * math.pi / 4.0 * checked_positive("diameter", diameter, "m") ** 2
-    L = checked_positive("length", length, "m")
+    d, L = checked_positive("diameter", diameter, "m"), checked_positive("length", length, "m")
+    if not d < L:
+        raise InputError(
+            f"diameter must be below the length, {L:g} m, but {shown(diameter)} was given. Both are in m.",
+            field="diameter",
+        )
+    area = count * math.pi / 4.0 * d**2
     yields, breaks = metal.yield_strength / metal.modulus, metal.ultimate_strain
     if ultimate_strain is not None:
         breaks = _checked_ultimate_strain(ultimate_strain, yields)

@@ -294,7 +294,7 @@ class RecordSet(HtmlTable, Value):
         if own:
             found.append(
                 translated(
-                    "{k} of {n} runs have warnings of their own. {record}: {warning}",
+                    "Runs with warnings of their own: {k} of {n}. {record}: {warning}",
                     k=len(own),
                     n=n,
                     record=own[0][0],

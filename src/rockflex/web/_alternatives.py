@@ -94,11 +94,11 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
     )
 
 
-def comparison_report_file(state: PageState, uploads: UploadedRecords, suffix: str) -> tuple[str, bytes]:
-    """Return the name and the content of the report of all alternatives, of the suffix ".html" or ".pdf"."""
+def comparison_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
+    """Return the name and the content of the report of all alternatives."""
     project = project_of_state(state, uploads)
     with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
         told: dict[str, Any] = {"units": state.units, "language": state.language, **project.head}
-        file = write_report(comparison, Path(folder) / f"comparison{suffix}", **told)
+        file = write_report(comparison, Path(folder) / "comparison.html", **told)
         return file.name, file.read_bytes()

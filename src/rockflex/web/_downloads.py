@@ -11,6 +11,7 @@ from rockflex._language import translated
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
 from rockflex.report.run import run_report_as_html
+from rockflex.report.run._report_files import page_as_pdf
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
 from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
@@ -105,6 +106,7 @@ MEDIA_TYPES = {
     ".toml": "application/toml",
     ".py": "text/x-python",
 }
+REPORTS_AS_PDF = {"report-pdf": "report", "comparison-pdf": "comparison"}
 MAX_HISTORY_ROWS = 250_000  # of a table of histories
 MAX_HISTORY_VALUES = 6_000_000  # of it: a bed has a column for every spring
 
@@ -118,21 +120,28 @@ def file_maker(state: PageState, what: str, uploads: UploadedRecords) -> Callabl
         The state of the page.
     what
         ``"animation"``, a key of `_MAKERS`, or one of a study: ``"cloud-study"``, ``"cloud-python"``,
-        ``"cloud-records"``, and the same of the other kinds.
+        ``"cloud-records"``, and the same of the other kinds. A report in HTML, or with ``"-pdf"`` as PDF.
     uploads
         Records of visitors.
     """
     if what == "animation":
         return lambda progress: animation_file(state, uploads, progress)
-    maker = _MAKERS.get(what) or _maker_of_study_file(what)
+    maker = _MAKERS.get(REPORTS_AS_PDF.get(what, what)) or _maker_of_study_file(what)
     if maker is None:
         raise Refusal(f"There is no file named {what[:40]!r}.", 404)
 
     def make(_: Progress) -> tuple[str, bytes]:
         name, content = maker(state, uploads)
-        return name, content if isinstance(content, bytes) else content.encode()
+        return _printed(what, name, content if isinstance(content, bytes) else content.encode())
 
     return make
+
+
+def _printed(what: str, name: str, content: bytes) -> tuple[str, bytes]:
+    if what not in REPORTS_AS_PDF:
+        return name, content
+    with errors_as_refusals(""):
+        return name.replace(".html", ".pdf"), page_as_pdf(content.decode())
 
 
 def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -237,8 +246,8 @@ def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tu
         return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
     from rockflex.plot import figure_as_svg
 
-    if what == "report" and page.report is not None:
-        return "report.html", page.report(job, state).encode()
+    if REPORTS_AS_PDF.get(what, what) == "report" and page.report is not None:
+        return _printed(what, "report.html", page.report(job, state).encode())
     with errors_as_refusals(""):
         return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()
 
@@ -246,8 +255,7 @@ def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tu
 _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
     "figure": _history_figure_file,
     "report": run_report_file,
-    "comparison": lambda state, uploads: comparison_report_file(state, uploads, ".html"),
-    "comparison-pdf": lambda state, uploads: comparison_report_file(state, uploads, ".pdf"),
+    "comparison": comparison_report_file,
     "project": project_file,
     "histories": _histories_table_file,
     "record": _record_csv_file,

@@ -195,7 +195,7 @@ def _least_width(widths: Array, values: Array, target: float) -> _LeastWidth:
     notes: list[str] = []
     if not known.all():
         lost = int((~known).sum())
-        notes.append(translated("{k} of {n} bases have no value and were left out.", k=lost, n=known.size))
+        notes.append(translated("Left out for want of a value: {k} of {n} bases.", k=lost, n=known.size))
     b, y = widths[known], values[known]
     rises = [(one, other) for (one, low), (other, high) in pairwise(zip(b, y, strict=True)) if high > low]
     meets = y <= target

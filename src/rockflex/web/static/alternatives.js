@@ -3,7 +3,7 @@
 import { yields } from "./choices.js";
 import { clone, decode, h, latest, scrolled, symbol, tableOf } from "./dom.js";
 import { trouble } from "./form.js";
-import { downloads } from "./jobs.js";
+import { downloads, reports } from "./jobs.js";
 import { legend } from "./marks.js";
 import { t, written } from "./texts.js";
 
@@ -25,10 +25,9 @@ export function alternatives(app, show) {
   const table = scrolled(t("Demands of the alternatives"), { id: "differences" });
   const hint = h("p", { class: "hint" });
   const element = h("section", { id: "alternatives", "aria-label": t("Alternatives") });
-  const files = [["comparison", t("Report of all (HTML)")], ...(app.about.pdf ? [["comparison-pdf", t("Report of all (PDF)")]] : [])];
-  const reports = downloads(app, files);
+  const files = downloads(app, reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")));
   element.append(h("h2", {}, t("Alternatives")),
-    h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), table, hint, reports);
+    h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), table, hint, files);
   let shown = ""; // what determines the table that is shown
 
   function rename(i, input) {
@@ -77,7 +76,7 @@ export function alternatives(app, show) {
       m.look = LOOKS[kept.findIndex(({ name }) => name === each.name)];
     }
     const cell = ({ text, value }) => h("td", { "data-value": value }, written(text));
-    table.hidden = reports.hidden = !answer.rows.length;
+    table.hidden = files.hidden = !answer.rows.length;
     table.replaceChildren(answer.rows.length ? tableOf(answer.heads, answer.rows.map(([first, ...others]) => (
       h("tr", {}, h("th", { scope: "row" }, symbol(first.text)), others.map(cell))))) : "");
     hint.textContent = !kept.length ? t("Keep the present structure to compare later ones with it.")

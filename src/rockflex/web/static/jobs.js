@@ -184,6 +184,9 @@ export class Study {
   }
 }
 
+// Those of a report, which is printed where the server has a browser.
+export const reports = (app, what, html, pdf) => [[what, html], ...(app.about.pdf ? [[`${what}-pdf`, pdf]] : [])];
+
 const PATIENCE = 400; // ms before the page shows that it waits, and the longest time between two looks
 const FILE_STATUS = {
   waiting: () => t("Waiting for other users' files."),

@@ -5,7 +5,7 @@ import { checksTable } from "./checks.js";
 import { explained } from "./choices.js";
 import { decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
 import { select } from "./form.js";
-import { assumed, choices, recordsOf, Study } from "./jobs.js";
+import { assumed, choices, recordsOf, reports, Study } from "./jobs.js";
 import { legend } from "./marks.js";
 import { counted, t } from "./texts.js";
 import { titled, unit } from "./units.js";
@@ -48,7 +48,7 @@ export function recordSet(app) {
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
     entry("scale", t("Scale factor of all records"), { hint: "0.01–20" }), model, rule, study.element);
-  results.append(study.downloads([["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
+  results.append(study.downloads([...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
     [["record_set-python", t("Python lines")]]));
   let view = null;
 

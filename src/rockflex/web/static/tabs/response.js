@@ -7,7 +7,7 @@ import { checksTable, limitsForm } from "../checks.js";
 import { yields } from "../choices.js";
 import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { select, slider } from "../form.js";
-import { downloads } from "../jobs.js";
+import { downloads, reports } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
 import { PEAKS_HELP, recordSet } from "../set.js";
@@ -35,7 +35,7 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["animation", t("Animation (GIF)")], ["histories", t("Histories (CSV)")],
+  ["figure", t("Figure (SVG)")], ["animation", t("Animation (GIF)")], ["histories", t("Histories (CSV)")],
   ["python", t("Python lines")], ["record", t("Record (CSV)")],
 ];
 
@@ -94,7 +94,7 @@ export default function responseTab(app) {
       h("fieldset", {}, h("legend", {}, t("Runs")), scale, options.element, h("p", { class: "error foot", role: "alert" })),
       limitsForm(app), saved.element),
     results);
-  results.append(downloads(app, FILES));
+  results.append(downloads(app, [...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ...FILES]));
 
   function draw() {
     const [first] = view.models;

@@ -5,7 +5,7 @@ import { attempt, send } from "../api.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
-import { downloads } from "../jobs.js";
+import { downloads, reports } from "../jobs.js";
 import { project } from "../project.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
@@ -168,7 +168,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(downloads(app, [["report", t("Report (HTML)")]]));
+  results.append(downloads(app, reports(app, "report", t("Report (HTML)"), t("Report (PDF)"))));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
