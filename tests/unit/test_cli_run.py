@@ -534,7 +534,7 @@ def test_what_does_not_fit_on_a_page(more, words, tmp_path):
 
 
 def test_a_path_that_is_no_page(tmp_path):
-    refused("the --report", "--report", tmp_path / "run.txt")
+    refused("--report must end", "--report", tmp_path / "run.txt")
     refused("is a folder. Give a file in it", "--report", tmp_path)
     refused("--force was given without --out", "--force")
     assert list(tmp_path.iterdir()) == []

@@ -28,6 +28,7 @@ DIMENSIONS = {
     "density": (1, -4, 2),
     "stress": (1, -2, 0),
     "elastic modulus": (1, -2, 0),
+    "shear modulus": (1, -2, 0),
     "stiffness": (1, -1, 0),
     "rotational stiffness": (1, 1, 0),
     "subgrade modulus": (1, -3, 0),

@@ -245,7 +245,7 @@ def test_leaning_masses_and_stories_that_yield(visitor) -> None:
     state = visitor.state()["structure"]
     assert state["leaning_masses"] == 1e4
     assert state["stories"]["post_yield_ratio"] == 0.05
-    assert state["stories"]["strengths"] == pytest.approx(0.3 * 9.81 * 190e3, rel=0.2)  # of about that weight
+    assert state["stories"]["strengths"] == pytest.approx(0.3 * 9.81 * 240e3, rel=0.02)  # of the weight on the base
     visitor.wait_for_results()
     visitor.fill("structure.stories.strengths", "4e5")
     visitor.wait_for_results()
