@@ -30,7 +30,8 @@ def test_downloads_of_each_tab(visitor, tab, monkeypatch) -> None:
         with page.expect_download() as got:
             button.click()
         assert got.value.path().stat().st_size > 50
-        assert got.value.suggested_filename.rsplit(".")[-1] in ("svg", "html", "pdf", "csv", "toml", "py", "gif", "rockflex")
+        ending = got.value.suggested_filename.rsplit(".")[-1]
+        assert ending in ("svg", "html", "pdf", "csv", "toml", "py", "gif", "rockflex")
 
 
 def test_a_link_reopens_the_page(visitor, visit) -> None:

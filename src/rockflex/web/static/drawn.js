@@ -111,6 +111,12 @@ export function drawing(app, settle) {
   let told = 0; // when the fields were last given their values
   let held = null; // the handle that is dragged, as it was before
 
+  // Below the drawing, for rows of handles.
+  function makeRoom() {
+    stage.under = Math.max(...(view ? handles(app, view, wanted) : []).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
+  }
+  touched.addEventListener("change", makeRoom);
+
   function act(handle, value, live) {
     const put = clamp(tidy(value), handle.range);
     wanted = handle.name in { B: 0, H: 0 } ? { [handle.name]: put } : {};
@@ -204,7 +210,7 @@ export function drawing(app, settle) {
     for (const name of CURVES) m[name] = m[name] && decode(m[name]);
     if (of === app.state.structure) wanted = {};
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
-    stage.under = Math.max(...handles(app, view, wanted).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
+    makeRoom();
     player.set(view);
     place();
     figures.replaceChildren(...three(m, run));
