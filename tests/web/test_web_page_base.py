@@ -73,7 +73,9 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         page.locator("details[data-path]:visible").first.get_by_role("button", name="Remove").click()
     assert "elements" not in visitor.state()["structure"]
     page.wait_for_selector('[data-handle^="element"]', state="detached")
-    assert visitor.value("[data-task=modes] dd[data-value] >> nth=2") == bare
+    page.wait_for_function(
+        "m => Number(document.querySelectorAll('[data-task=modes] dd[data-value]')[2]?.dataset.value) === m", arg=bare
+    )
 
 
 def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, link) -> None:
