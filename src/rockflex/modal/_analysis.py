@@ -61,6 +61,11 @@ class FloorModes(Value):
         """Number of modes n."""
         return self.displacement.shape[1]
 
+    @property
+    def story_heights(self) -> Array:
+        """Heights of the floors above those below them, (N,) in m; positive where they stand one above another."""
+        return np.diff(self.heights, prepend=0.0)
+
     def truncated(self, n_modes: SupportsIndex) -> "FloorModes":
         """Return only the first `n_modes` modes.
 

@@ -341,7 +341,7 @@ def _drift_ratio(run: Response, history: History, _: CheckLimits) -> float:
     if run.floors is None or floors is None:
         raise MissingQuantityError(translated("the structure has no floors"))
     first = int(floors.heights[0] == 0.0)  # stations of a distributed mass begin with the base
-    heights = np.diff(floors.heights, prepend=0.0)[first:]
+    heights = floors.story_heights[first:]
     if heights.min() <= 0.0:
         raise MissingQuantityError(translated("the floors do not stand one above another, so stories have no height"))
     return float((run.floors.story_drift[first:] / heights).max())

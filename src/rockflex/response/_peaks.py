@@ -244,7 +244,7 @@ def _of_stories(model: RockingModel, moves: Sequence[ElementExtremes], final_sta
     return {
         "ductility": _fixed(ductility),
         "residual_drift": _fixed(drift),
-        "residual_drift_ratio": _fixed(drift / np.diff(p.floors.heights, prepend=0.0)),
+        "residual_drift_ratio": _fixed(drift / p.floors.story_heights),
     }
 
 

@@ -211,13 +211,12 @@ def floors_view(response: Response) -> list[dict[str, float]]:
     peaks, floors = response.floors, response.history.model.properties.floors
     if peaks is None or floors is None or floors.heights.size > MAX_FLOORS:
         return []
-    stories = np.diff(floors.heights, prepend=0.0)
-    if stories.min() <= 0.0:
+    if floors.story_heights.min() <= 0.0:
         return []
     columns = {
         "height": floors.heights,
         "story_drift": peaks.story_drift,
-        "drift_ratio": peaks.story_drift / stories,
+        "drift_ratio": peaks.story_drift / floors.story_heights,
         "story_shear": peaks.story_shear,
         "floor_acceleration": peaks.floor_acceleration,
         "total_floor_displacement": peaks.total_floor_displacement,
