@@ -54,11 +54,12 @@ class ToyPlan:
 
 @dataclass(frozen=True)
 class FailingPlan(ToyPlan):
-    """One whose chunk 2 raises."""
+    """One whose chunks from 2 on raise, that one last."""
 
     def chunk(self, number: int) -> pa.Table:
-        if number == 2:
-            message = "this chunk is beyond repair"
+        if number >= 2:
+            time.sleep(0.5 * (number == 2))
+            message = f"chunk {number} is beyond repair"
             raise ArithmeticError(message)
         return super().chunk(number)
 

@@ -1,5 +1,8 @@
 """Demands of the user's own as columns of a cloud."""
 
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -74,7 +77,18 @@ def test_what_is_no_demand_is_refused(demands, message):
         rf.run_cloud(FRAME, SUITE, "2DOF-S", demands=demands)
 
 
-def test_what_a_demand_raises_ends_the_study_and_says_where():
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_what_a_demand_raises_of_the_first_run_ends_the_study(workers):
+    """The first run is held back, so that the others fail before."""
+    failed = threading.Event()
+
+    def fails(response):
+        if response.motion == SUITE[0].name and workers > 1:
+            failed.wait(10.0)
+            time.sleep(0.2)  # until the other failure is known
+        failed.set()
+        return 1 / 0
+
     with pytest.raises(ZeroDivisionError) as raised:
-        rf.run_cloud(FRAME, SUITE, "2DOF-S", workers=2, demands={"x": lambda _: 1 / 0})
-    assert raised.value.__notes__[0].startswith("This was raised by the demand 'x' of 2DOF-S under FF-1-")
+        rf.run_cloud(FRAME, SUITE, "2DOF-S", workers=workers, demands={"x": fails})
+    assert raised.value.__notes__[0] == "This was raised by the demand 'x' of 2DOF-S under FF-1-a."

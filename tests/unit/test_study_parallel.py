@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from rockflex import InputError
-from rockflex.study.parallel import MAX_TASK_RATE, MIN_TASK_TIME, TASKS_PER_THREAD, chunks_per_task, map_threads
+from rockflex.solve import asked_to_stop
+from rockflex.study.parallel import (
+    MAX_TASK_RATE,
+    MIN_TASK_TIME,
+    TASKS_PER_THREAD,
+    chunks_per_task,
+    map_runs,
+    map_threads,
+)
 
 WORKERS = pytest.mark.parametrize("workers", [1, 2, 7, None])
 
@@ -73,6 +81,35 @@ def test_an_exception_ends_the_map(workers):
     with pytest.raises(KeyError, match="the twentieth"):
         list(map_threads(work, range(10_000), workers))
     assert len(done) < 1000
+
+
+@pytest.mark.parametrize("first", [0, 3, 7])
+@pytest.mark.parametrize("workers", [1, 2, 3, 7])
+def test_the_error_is_that_of_the_first_task_that_fails(workers, first):
+    """It is held back until another one has failed; what was done before it is yielded, what runs after it stops."""
+    failed, stopped, came = threading.Event(), [], []
+
+    def work(k):
+        if k < first:
+            return k
+        if k == first:
+            failed.wait(10.0 * (workers > 1))
+        elif k == first + 2:  # runs until it is told to stop
+            stopped.append(wait_until(asked_to_stop()))
+        failed.set()
+        raise KeyError(k)
+
+    with pytest.raises(KeyError) as caught:
+        came.extend(map_runs(work, range(1000), workers))
+    assert caught.value.args == (first,)
+    assert stopped in ([], [True])
+
+
+def wait_until(condition):
+    end = time.monotonic() + 10.0
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.001)
+    return condition()
 
 
 @WORKERS

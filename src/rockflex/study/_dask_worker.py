@@ -52,7 +52,7 @@ def compute_chunks_on_worker(name: str, numbers: tuple[int, ...], versions: dict
         try:
             results.append(plan.chunk(number))
         except Exception as error:
-            error.add_note(f"This was raised by chunk {number} on a worker of the cluster, {_dask_worker_address()}.")
+            error.add_note(f"This was raised by chunk {number} on a worker of the cluster.")
             raise
     return results, perf_counter() - start
 

@@ -199,7 +199,7 @@ class RunPeaks:
 
     `columns` are the status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of
     shape (count,); empty if all runs failed. The values of runs that failed mean nothing; their errors are the
-    `failures`. `responses` are those of the runs of cases with histories.
+    `failures`, in the order of the runs. `responses` are those of the runs of cases with histories.
     """
 
     count: int
@@ -301,7 +301,7 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
         if not keep:
             for case in {case for case in cases if not left[case]}:
                 case.engine.release()
-    return RunPeaks(len(runs), columns, failures, responses)
+    return RunPeaks(len(runs), columns, dict(sorted(failures.items())), responses)
 
 
 def _solutions_by_group(

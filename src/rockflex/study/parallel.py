@@ -1,6 +1,7 @@
 """Maps over independent tasks, on threads, or over the chunks of a plan on a Dask cluster that the user has started."""
 
 import gc
+import math
 import os
 import pickle
 import time
@@ -8,7 +9,6 @@ from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
 from contextlib import closing, contextmanager, suppress
 from queue import Empty, SimpleQueue
-from threading import Event
 from typing import Any, Generic, Protocol, SupportsIndex, TypeAlias, TypeVar
 from uuid import uuid4
 
@@ -35,12 +35,14 @@ def map_threads(
     function: Callable[[Task], Result],
     tasks: Iterable[Task],
     workers: SupportsIndex | None = None,
-    leaving: Callable[[], object] = lambda: None,
+    leaving: Callable[[int], object] = lambda _: None,
 ) -> Generator[Result]:
     """Yield `function(task)` of every task, in order of completion; few tasks wait at a time.
 
-    When the map ends early, by an error, an interrupt or `close`, no further task starts, and the map waits for those
-    that run, at most one per thread. A consumer that may fail should close it by `contextlib.closing`.
+    The error that is raised is that of the first task that fails in the order of the tasks, on any number of threads:
+    after an error no further task starts, those before it are completed, and the results of those after it are
+    dropped. A consumer that may fail should close the map by `contextlib.closing`; it then waits for the tasks that
+    run, at most one per thread.
 
     Parameters
     ----------
@@ -51,7 +53,8 @@ def map_threads(
     workers
         Number of threads; None for one per core, 1 for no threads (to debug).
     leaving
-        Called when the map ends, before it waits for the tasks that still run, in order to stop them.
+        Called with the place of a task, counted from 0, when the tasks after it are no longer needed, in order to stop
+        those that run; with -1 when the map ends.
 
     Raises
     ------
@@ -62,22 +65,41 @@ def map_threads(
     if count == 1:
         yield from map(function, tasks)
         return
-    queue = iter(tasks)
+    queue = enumerate(tasks)
+    running = dict[Future[Result], int]()
+    place, failure = -1, None  # of the last task that was read, then of the first one known to fail
     with ThreadPoolExecutor(count) as pool:
-        running: set[Future[Result]] = set()
         try:
             while True:
-                for task in queue:
-                    running.add(pool.submit(function, task))
-                    if len(running) >= 2 * count:
+                while failure is None and len(running) < 2 * count:
+                    try:
+                        place, task = next(queue)
+                    except StopIteration:
                         break
+                    except Exception as error:  # the tasks before are to end first, as on one thread
+                        place, failure = place + 1, error
+                        break
+                    running[pool.submit(function, task)] = place
                 if not running:
-                    return
-                done, running = wait(running, return_when=FIRST_COMPLETED)
-                for future in done:
-                    yield future.result()
+                    break
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in sorted(done, key=running.__getitem__):
+                    number = running.pop(future, None)
+                    if number is None:
+                        continue  # a task after the one that failed
+                    error = future.exception()
+                    if error is None:
+                        yield future.result()
+                        continue
+                    place, failure = number, error
+                    leaving(number)
+                    for other in [each for each, after in running.items() if after > number]:
+                        other.cancel()
+                        del running[other]
+            if failure is not None:
+                raise failure
         finally:
-            leaving()
+            leaving(-1)
             for future in running:
                 future.cancel()
 
@@ -86,13 +108,17 @@ def map_runs(
     function: Callable[[Task], Result], tasks: Iterable[Task], workers: SupportsIndex | None = None
 ) -> Generator[Result]:
     """Map over tasks as `map_threads` does. Leaving the map, by Ctrl-C for instance, stops the runs in progress."""
-    leave, asked = Event(), asked_to_stop()
+    last, asked = [math.inf], asked_to_stop()  # the place of the last task that is still needed
 
-    def guarded(task: Task) -> Result:
-        with stopping_when(lambda: leave.is_set() or asked()):
+    def guarded(numbered: tuple[int, Task]) -> Result:
+        place, task = numbered
+        with stopping_when(lambda: place > last[0] or asked()):
             return function(task)
 
-    return map_threads(guarded, tasks, workers, leave.set)
+    def leave(place: int) -> None:
+        last[0] = place
+
+    return map_threads(guarded, enumerate(tasks), workers, leave)
 
 
 def map_runs_in_order(
@@ -214,13 +240,13 @@ def map_chunks_on_dask(
             )
         )
         looked, threads, alive = -RECOUNT_INTERVAL, 0, time.monotonic()
-        left = asked
+        left, failed = asked, None
         while done < len(asked):
             with _explaining_lost_scheduler(address, done, len(asked)):
                 if time.monotonic() - looked > RECOUNT_INTERVAL or not threads:
                     threads, looked = sum(client.nthreads().values()), time.monotonic()
                 left = tasks.send(left, threads)
-                batch, results, error = tasks.first()
+                batch, results, error = tasks.next_done()
             now = time.monotonic()
             alive = now if threads else alive
             if now - alive > limit:
@@ -229,8 +255,10 @@ def map_chunks_on_dask(
                     f"{_chunk_count_text(done, len(asked))}. "
                     "Start workers and run it again."
                 )
-            if error is not None:
-                raise _explained_dask_error(error, batch, _chunk_count_text(done, len(asked)))
+            if error is not None:  # that of the first batch that fails, whatever the order of completion
+                failed, left, batch = (batch, error), [], ()
+            if failed is not None and not tasks.running:
+                raise _explained_dask_error(failed[1], failed[0], _chunk_count_text(done, len(asked)))
             results.reverse()
             for number in batch:  # each result is let go once it has been used
                 done += 1
@@ -313,15 +341,24 @@ class _DaskTasks:
             future.add_done_callback(self.ready.put)
         return numbers[place:] if place else numbers
 
-    def first(self) -> tuple[Batch, list[Any], BaseException | None]:
-        """Return the next batch that is done, with its results or its error; an empty one if none comes in time."""
+    def next_done(self) -> tuple[Batch, list[Any], BaseException | None]:
+        """Return the next batch that is done, with its results or its error; an empty one if none comes in time.
+
+        After an error the batches that were sent later are given up.
+        """
         try:
             future = self.ready.get(timeout=POLL_INTERVAL if self.running else 0.1)
         except Empty:
             return (), [], None
-        batch = self.running.pop(future)
+        if future not in self.running:  # given up
+            return (), [], None
         if future.status == "error":
-            return batch, [], future.exception()
+            sent = list(self.running)
+            for later in sent[sent.index(future) + 1 :]:
+                del self.running[later]
+                later.cancel()
+            return self.running.pop(future), [], future.exception()
+        batch = self.running.pop(future)
         results, seconds = future.result()
         chunk_time = seconds / len(batch)
         self.chunk_time = chunk_time if self.chunk_time is None else 0.5 * (self.chunk_time + chunk_time)
@@ -338,7 +375,6 @@ def _explained_dask_error(error: BaseException, batch: Batch, count: str) -> Bas
             "which most often is too little memory, and run it again."
         )
         return ClusterError(message)
-    error.add_note(f"{count[0].upper()}{count[1:]}.")
     return error
 
 
