@@ -254,6 +254,7 @@ def test_no_import_cycles_between_files() -> None:
     assert cycle(FOUND, SOURCES) == []
 
 
+@pytest.mark.slow
 def test_every_module_is_short_documented_and_of_a_layer() -> None:
     assert careless(SOURCES) == []
 

@@ -26,6 +26,7 @@ def shaken() -> System:
     return bilinear(6.0, 0.05, 0.1, 0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("free", "settles"), [(0, False), (100, False), (10_000, True)])
 def test_a_batch_has_the_bits_of_runs_one_by_one(engine, free, settles):
     run_of, batch_of = engine

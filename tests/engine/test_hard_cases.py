@@ -249,6 +249,7 @@ def test_a_motion_that_creeps_to_a_border_comes_to_rest_there(roots):
     assert passing.ended
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("n", "m", "k"), [(1, 0, 0), (1, 1, 0), (9, 9, 9), (320, 0, 1000), (40, 4000, 96)])
 def test_systems_of_every_size_up_to_the_limits(n, m, k):
     rng = np.random.default_rng(n + m)

@@ -214,6 +214,7 @@ def test_a_field_that_fails_ends_the_run(run_of):
         run.advance(np.zeros(11))
 
 
+@pytest.mark.slow
 def test_a_motion_that_explodes_is_an_error(run_of):
     run = run_of(system(lambda y, _a, _v: np.array([y[0] ** 2, 0.0]), lambda _key: ()), 0.01, [1.0, 0.0])
     with pytest.raises(SolverError, match="short enough"):

@@ -32,6 +32,7 @@ def path_of(phase: LinearPhase, y: np.ndarray, long: float, count: int) -> np.nd
     return np.array(states)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("swings", [True, False])
 def test_rest_is_said_where_nothing_follows_and_only_there(swings):
     rng, one_sided, said = np.random.default_rng(5), np.array([0.0, 1.0]), {"rests": 0, "waits": 0, "unknown": 0}

@@ -117,6 +117,7 @@ def test_an_exception_of_the_watch_ends_a_run():
     assert run.peaks["force"][0] > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("turns", "damping"), [*product((4.0, 30.0, 300.0), (0.0, 0.02)), (30.0, 3.0), (300.0, 3.0)])
 def test_fast_modes_cost_little_and_hide_no_peak(turns, damping):
     # Coupled oscillators, one fast; the force in the spring between them is an output.

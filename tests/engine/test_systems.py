@@ -117,6 +117,7 @@ def test_two_blocks_in_a_row(run_of):
     np.testing.assert_allclose(states[at, 2:], [(before, 0.0), (first, second)], rtol=1e-12, atol=1e-14)
 
 
+@pytest.mark.slow
 def test_an_oscillator_comes_to_rest(run_of):
     run = run_of(bilinear(6.0, 0.05, 0.1, 0.02), 0.01, [0.0, 0.3, 0.0])
     assert run.settle()
@@ -142,6 +143,7 @@ def test_what_is_logged_changes_no_bit():
     assert result(history=False) == result(history=True) == result(history=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["baseline", "v3", "v4"])
 def test_levels_of_vector_instructions_agree(level):
     script = (

@@ -85,6 +85,7 @@ def integrated(a, v, h, omega=OMEGA, stiffer=2.0):
     return np.array(times), y, peaks
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_a_parametric_oscillator_with_two_stiffnesses(engine, seed):
     a, v = shaking(seed)
@@ -110,6 +111,7 @@ def mathieu(omega: float, size: int = 1) -> System:
     return System(layout, tuple(f"y{k}" for k in range(2 * size)), lambda _key: phase, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1, 2, MAX_FED + 1])  # the last one is left to power series
 @pytest.mark.parametrize(("omega", "scale"), [(0.0, 1.0), (5.0, 1.0), (60.0, 1.0), (5.0, 300.0), (600.0, 1.0)])
 def test_a_parametric_oscillator(size, omega, scale):

@@ -43,6 +43,7 @@ def test_the_ledger_closes(given_, damping_ratio, motion, model):
     assert run.energy.closing_error < 1e-9
 
 
+@pytest.mark.slow
 @settings_
 @given(frames, st.floats(0.01, 0.1), stretches())
 def test_after_the_shaking_energy_only_falls(given_, damping_ratio, motion):
@@ -53,6 +54,7 @@ def test_after_the_shaking_energy_only_falls(given_, damping_ratio, motion):
     assert np.all(np.diff(free) <= 1e-10 * np.abs(total).max())
 
 
+@pytest.mark.slow
 @settings_
 @given(st.floats(0.02, 0.95), st.floats(3.0, 12.0), st.just(1e-3))
 @example(0.02, 3.0, 1e-4)

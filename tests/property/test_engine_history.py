@@ -16,6 +16,7 @@ starts = st.one_of(st.none(), st.builds(InitialState, rotation=st.floats(-0.2, 0
 models = st.sampled_from(["MDOF-S", "2DOF-S"])
 
 
+@pytest.mark.slow
 @settings_
 @given(frames, stretches(), models, starts)
 def test_peaks_are_those_of_the_history(structure, motion, model, start):

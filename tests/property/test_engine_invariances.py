@@ -84,12 +84,14 @@ def assert_mirrored(one, other):
     assert np.array_equal(nodes[:, 6 + 2 * n :], opposite[:, 6 + 2 * n :])  # energies
 
 
+@pytest.mark.slow
 @examples(120)
 @given(frames, motions(), models)
 def test_a_mirrored_record_mirrors_the_response(given_, motion, model):
     assert_mirrored(*mirrored(Frame(**given_), motion, model))
 
 
+@pytest.mark.slow
 @examples(25)
 @given(frames, motions(), springs, st.sampled_from(["2DOF-S", "2DOF-C", "1DOF-fixed"]))
 def test_a_mirrored_record_mirrors_a_yielding_response(given_, motion, spring, model):
@@ -109,6 +111,7 @@ def test_a_mirrored_record_mirrors_rocking_that_passes(given_, motion, e):
     assert_mirrored(*mirrored(Frame(**given_), motion, "rigid-C", impact=Restitution(e)))
 
 
+@pytest.mark.slow
 @examples(80)
 @given(frames, motions(), st.integers(2, 5), models)
 def test_refining_the_record_changes_no_peak(given_, motion, k, model):
@@ -130,6 +133,7 @@ def test_refining_the_record_changes_no_yielding(given_, motion, k, spring, mode
     assert_same_peaks(one, other, bound)
 
 
+@pytest.mark.slow
 @examples(80)
 @given(frames, motions(), st.sampled_from([("MDOF-S", "fixed"), ("2DOF-C", "1DOF-fixed"), ("MDOF-C-SI", "fixed")]))
 def test_a_base_too_wide_to_lift_is_fixed(given_, motion, labels):
@@ -155,6 +159,7 @@ def test_as_many_modes_as_there_are_is_all_of_them(given_, motion):
     assert {**one.peaks(), "model": "MDOF-S"} == other.peaks()
 
 
+@pytest.mark.slow
 @examples(60)
 @given(frames, motions(steps=STEPS), st.integers(1, 200))
 def test_a_late_start_shifts_the_response(given_, motion, quiet):
@@ -168,6 +173,7 @@ def test_a_late_start_shifts_the_response(given_, motion, quiet):
         assert other.uplift_times[0] == pytest.approx(one.uplift_times[0] + quiet * motion.dt, abs=1e-9)
 
 
+@pytest.mark.slow
 @examples(80)
 @given(frames, motions(), models, st.floats(1e-3, 1e3))
 def test_heavier_by_a_factor_is_stronger_by_it(given_, motion, model, factor):
@@ -178,6 +184,7 @@ def test_heavier_by_a_factor_is_stronger_by_it(given_, motion, model, factor):
     assert_same_peaks(*runs, bound_of(one, motion, model), forces=factor)
 
 
+@pytest.mark.slow
 @examples(60)
 @given(frames, motions(steps=STEPS), st.floats(0.1, 10.0))
 def test_larger_by_a_factor_is_slower_by_its_root(given_, motion, factor):
@@ -194,6 +201,7 @@ def test_larger_by_a_factor_is_slower_by_its_root(given_, motion, factor):
     assert big.max_base_shear == pytest.approx(small.max_base_shear, rel=bound)
 
 
+@pytest.mark.slow
 @examples(25)
 @given(frames, motions(200, STEPS), st.data())
 def test_the_twin_agrees(given_, motion, data):

@@ -36,6 +36,7 @@ def refused(call: Any, arguments: dict[str, Any]) -> str | None:
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("group", [hostile.structures, hostile.motions, hostile.fits, hostile.studies])
 def test_every_argument_is_judged(group: Any) -> None:
     never = dict.fromkeys(("complex", "complex array", "in itself", "bytes", "object", "dates", "date"))

@@ -176,6 +176,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["manifest.json", "spec.json", "parts/part-00000.parquet"])
 @SETTINGS
 @given(draw=st.data())
@@ -204,6 +205,7 @@ LOCKS = st.one_of(
 )
 
 
+@pytest.mark.slow
 @SETTINGS
 @given(content=LOCKS, age=st.sampled_from([-1e6, 1.0, 1e6]))
 def test_locks_of_anything(tmp_path: Path, content: bytes, age: float) -> None:

@@ -70,6 +70,7 @@ def test_quiet_ground_moves_nothing(model):
     assert not yields.history.states[:, 1:].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "n", "law"),
     [

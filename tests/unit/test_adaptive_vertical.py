@@ -50,6 +50,7 @@ def run(model, acceleration, dt, vertical=None, *, history=True, **options):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_against_scipy(case):
     n_modes, told = CASES[case]

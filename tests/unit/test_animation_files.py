@@ -53,6 +53,7 @@ def test_hundredths_of_a_rate_that_they_cannot_hold_add_up(response, tmp_path):
     assert abs(sum(shown) - MARGIN - 31 / 0.3) <= 0.5
 
 
+@pytest.mark.slow
 def test_a_gif_shows_what_an_mp4_does(response, tmp_path):
     how = {"width": 480, "frames_per_second": 10, "stop": 1.5}
     frames, _ = gif_of(rf.animate(response, tmp_path / "run.gif", **how))
@@ -70,6 +71,7 @@ def test_a_gif_shows_what_an_mp4_does(response, tmp_path):
     assert min(moved) > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "wide"), [(320, 320), (481, 480)])
 def test_sizes_are_even(response, tmp_path, width, wide):
     file = rf.animate(response, tmp_path / "run.mp4", width=width, frames_per_second=5, stop=0.4)
@@ -86,6 +88,7 @@ def test_an_existing_file_is_replaced_and_nothing_else_is_left(response, tmp_pat
     assert list(tmp_path.iterdir()) == [file]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ZeroDivisionError])
 def test_what_stops_the_drawing_leaves_the_folder_as_it_was(response, tmp_path, suffix, error):
@@ -179,6 +182,7 @@ def test_other_paths_and_too_many_responses_are_refused(response, tmp_path, name
         rf.animate([response] * count, tmp_path / name)
 
 
+@pytest.mark.slow
 def test_the_encoder_is_loaded_only_for_mp4():
     program = "import sys, rockflex as rf; rf.animate; print('imageio_ffmpeg' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

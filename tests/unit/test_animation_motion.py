@@ -243,6 +243,7 @@ def test_the_last_frame_of_a_fall_says_when_it_overturned(runs):
         )
 
 
+@pytest.mark.slow
 def test_the_picture_moves_as_the_response(tmp_path):
     run = rf.simulate(PIER, RECORD.scaled(2.0), "2DOF-S")  # drawn in a colour that nothing else on the left has
     file = rf.animate(run, tmp_path / "run.gif", structure=PIER, start=2.0, stop=6.0, frames_per_second=5,

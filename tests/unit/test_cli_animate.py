@@ -22,6 +22,7 @@ def invoke(*arguments):
     return CliRunner().invoke(app, ["animate", *map(str, arguments)], env={"COLUMNS": "200"})
 
 
+@pytest.mark.slow
 def test_writes_what_the_library_does(tmp_path):
     file = tmp_path / "run.gif"
     result = invoke(STRUCTURE, "el-centro-1940", "--model", "MDOF-S,fixed", "--scale", "1.5", *SMALL, "--out", file)

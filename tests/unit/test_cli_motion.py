@@ -30,6 +30,7 @@ def test_without_a_name_the_suites_are_listed():
     assert [row["suite"] for row in found["suites"]] == list(rf.suite_names())
 
 
+@pytest.mark.slow
 def test_measures_are_those_of_the_motion():
     found = json.loads(invoke("el-centro-1940", "--period", 0.5, "--period", 2, "--damping", 0.02, "--json").stdout)
     (row,) = found["motions"]
@@ -49,6 +50,7 @@ def record_at2(folder, name, component, peak=0.3):
     return folder / name
 
 
+@pytest.mark.slow
 def test_vertical_component(tmp_path):
     along, upwards = record_at2(tmp_path, "A-000.AT2", "0", 0.4), record_at2(tmp_path, "A-UP.AT2", "UP", 0.3)
     motion = rf.read_motion(along, vertical=upwards)

@@ -207,6 +207,7 @@ HELPS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", HELPS)
 def test_help_imports_nothing_heavy(arguments):
     code = f"""
@@ -254,6 +255,7 @@ def test_help_explains_and_gives_examples(command, words):
         assert word in result.stdout
 
 
+@pytest.mark.slow
 def test_input_error_is_one_paragraph_without_traceback():
     done = python("-m", "rockflex", "modes", "nowhere.toml")
     assert done.returncode == 2
@@ -262,6 +264,7 @@ def test_input_error_is_one_paragraph_without_traceback():
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_piped_output_has_no_escape_codes_and_no_bar(tmp_path):
     done = python("-m", "rockflex", "run", str(ROOT / "examples/structure_1.toml"), "el-centro-1940")
     assert done.returncode == 0
@@ -270,6 +273,7 @@ def test_piped_output_has_no_escape_codes_and_no_bar(tmp_path):
     assert max(map(len, done.stdout.splitlines())) <= 80
 
 
+@pytest.mark.slow
 def test_terminal_without_greek_letters():
     done = python("-m", "rockflex", "modes", str(ROOT / "examples/structure_1.toml"), PYTHONIOENCODING="ascii")
     assert done.returncode == 0
@@ -337,6 +341,7 @@ def test_a_share_of_a_study_does_so_too(study, tmp_path, impatient):
     assert {int(line[3]) for line in lines_of("cloud", study, "--out", tmp_path / "out", "--share", "1/2")} == {6}
 
 
+@pytest.mark.slow
 def test_many_runs_and_the_paper_do_so_too(tmp_path, impatient):
     lines = lines_of("run", ROOT / "examples" / "wall.toml", "fema-p695-far-field", "--model", "2DOF-S,MDOF-S")
     assert {(line[1], int(line[3])) for line in lines} == {("Simulating", 88)}

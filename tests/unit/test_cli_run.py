@@ -96,6 +96,7 @@ def test_free_vibration(given, value):
     assert found["runs"][0]["end_time"] > FF["FF-2-a"].duration + 2.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [[], ["--workers", 3]])
 def test_many_runs_are_those_done_one_by_one(monkeypatch, workers):
     arguments = [STRUCTURE, "fema-p695-near-field-pulse", "--scale", 1, "--scale", 0.5, "--model", "2DOF-S,fixed"]
@@ -173,6 +174,7 @@ def test_times_are_those_of_the_peaks():
     assert list(map(float, last[2:])) == pytest.approx([*times, response.end_time], abs=1e-3)
 
 
+@pytest.mark.slow
 def test_folder_of_results(tmp_path):
     folder = tmp_path / "out"
     scales = ("--scale", 1, "--scale", 2)
@@ -222,6 +224,7 @@ def test_a_tendon_beyond_its_yield_force_is_told_in_words():
     assert f"Warning: EL-CENTRO-1940-NS × 3: {said}" in invoke(*arguments).stderr
 
 
+@pytest.mark.slow
 def test_unknown_height_of_the_top_leaves_its_total_displacement_out(tmp_path):
     content = (EXAMPLES / "structure_properties.toml").read_text("utf-8")
     file = tmp_path / "structure.toml"
@@ -297,6 +300,7 @@ def test_failed_runs_are_told_and_the_others_go_on(monkeypatch, more, code):
     assert "fixed" in result.stdout
 
 
+@pytest.mark.slow
 def test_failed_runs_in_the_files(monkeypatch, tmp_path):
     break_down(monkeypatch, {"MDOF-S"})
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out", "--json")
@@ -417,6 +421,7 @@ def fused(tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_elements_are_told_with_their_forces_and_energies(fused, tmp_path):
     arguments = (fused, "fema-p695-far-field/FF-2-a", "--scale", 2, "--model", "MDOF-S")
     response = rf.simulate(rf.read_structure(fused), FF["FF-2-a"].scaled(2.0))
@@ -475,6 +480,7 @@ def refused(words, *arguments):
     assert words in " ".join(result.stderr.split())
 
 
+@pytest.mark.slow
 def test_the_page_has_the_peaks_of_the_runs(tmp_path, monkeypatch):
     page = tmp_path / "new" / "run.html"
     arguments = ["--scale", "1.5", "--model", "2DOF-S,fixed", "--friction", "0.4", "--report", str(page)]
@@ -501,6 +507,7 @@ def test_a_page_that_cannot_be_written_does_not_cost_the_results(tmp_path):
     assert "Cannot write to" in result.stderr
 
 
+@pytest.mark.slow
 def test_with_out_each_has_its_own_files(tmp_path):
     page, out = tmp_path / "run.html", tmp_path / "out"
     assert invoke_report("--report", page, "--out", out, "--figures", "0").exit_code == 0
@@ -508,6 +515,7 @@ def test_with_out_each_has_its_own_files(tmp_path):
     assert sorted(each.name for each in out.iterdir()) == ["results.csv", "summary.json"]
 
 
+@pytest.mark.slow
 def test_an_earlier_page_stays_without_force(tmp_path):
     page = tmp_path / "run.html"
     page.write_text("mine")

@@ -348,6 +348,7 @@ def columns(text, *wanted):
     return [float(cells[place]) for place in wanted]
 
 
+@pytest.mark.slow
 def test_tables_show_how_the_base_moves_on_its_ground():
     arguments = (STRUCTURE, RECORD, "--model", "MDOF-S", "--scale", 2)
     (soft,) = document(*arguments, *SOFT, "--ground-friction", 0.15)["runs"]
@@ -367,6 +368,7 @@ def test_tables_show_how_the_base_moves_on_its_ground():
     assert "slip:" not in usual
 
 
+@pytest.mark.slow
 def test_histories_have_the_columns_of_the_base(tmp_path):
     arguments = (STRUCTURE, RECORD, "--model", "MDOF-S", "--scale", 2, *SOFT, "--ground-friction", 0.15)
     result = invoke(*arguments, "--out", tmp_path / "out")
@@ -388,6 +390,7 @@ def test_histories_have_the_columns_of_the_base(tmp_path):
     ] * 4
 
 
+@pytest.mark.slow
 def test_the_vertical_component_is_named(tmp_path):
     rows = "".join(f"{0.01 * i:.2f},{3 * np.sin(0.05 * i):.5f}\n" for i in range(400))
     for name, text in (("along.csv", f"time (s),acc (m/s2)\n{rows}"), ("up.csv", f"time (s),vertical (m/s2)\n{rows}")):
@@ -408,6 +411,7 @@ EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 NAMES = ["required_friction", "required_friction_excluding_impacts", "sliding_time"]
 
 
+@pytest.mark.slow
 def test_document_has_what_the_library_finds():
     models = "2DOF-C,MDOF-S,rigid,fixed"
     rows = runs_of(STRUCTURE, "el-centro-1940", "--model", models, "--friction", 0.2, "--scale", 1, "--scale", 1.5)
@@ -454,6 +458,7 @@ def test_a_base_that_loses_contact():
     assert "inf" in invoke(STRUCTURE, "el-centro-1940", *flags).stdout
 
 
+@pytest.mark.slow
 def test_files(tmp_path):
     folder = tmp_path / "out"
     flags = ("--model", "2DOF-S,2DOF-S-BW", "--yield-displacement", 0.05, "--friction", 0.15)
@@ -472,6 +477,7 @@ def test_files(tmp_path):
         np.testing.assert_array_equal([float(row[name]) for row in history], getattr(run, name))
 
 
+@pytest.mark.slow
 def test_histories_have_no_friction_unless_asked(tmp_path):
     invoke(STRUCTURE, "el-centro-1940", "--model", "2DOF-S", "--out", tmp_path / "out")
     head = (tmp_path / "out" / "history-EL-CENTRO-1940-NS.csv").read_text("utf-8").splitlines()[0].split(",")
@@ -479,6 +485,7 @@ def test_histories_have_no_friction_unless_asked(tmp_path):
     assert {"total_top_displacement", "horizontal_reaction", "vertical_reaction"} <= set(head)
 
 
+@pytest.mark.slow
 def test_many_runs(monkeypatch):
     scales = [item for k in range(22) for item in ("--scale", 0.5 + k / 16)]
     arguments = (STRUCTURE, "el-centro-1940", *scales, "--model", "2DOF-S,rigid,fixed", "--friction", 0.4)
@@ -491,6 +498,7 @@ def test_many_runs(monkeypatch):
     assert many == few
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_be_solved(monkeypatch):
     solved = PreparedCase.run
 

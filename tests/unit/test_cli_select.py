@@ -134,6 +134,7 @@ def test_printed_table():
     assert "1940" in alone
 
 
+@pytest.mark.slow
 def test_files(tmp_path):
     out, records = tmp_path / "out", tmp_path / "records"
     result = invoke(*USUAL, "--measure", "rotd50", "--out", out, "--records", records)
@@ -156,6 +157,7 @@ def test_files(tmp_path):
     assert len(rf.read_suite(records)) == 3
 
 
+@pytest.mark.slow
 def test_scaled_records_keep_their_origin_and_their_scale(tmp_path):
     records, page = tmp_path / "records", tmp_path / "run.html"
     found = json.loads(invoke(*USUAL, "--measure", "geometric-mean", "--records", records, "--json").stdout)

@@ -147,6 +147,7 @@ def test_rows_with_errors_are_told_and_strict_says_so(study):
 ONE = '[records]\nsuites = ["el-centro-1940"]\n'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "head", "reasons"),
     [
@@ -230,6 +231,7 @@ def test_files_of_a_folder_that_are_left_out_are_told_once(tmp_path):
     assert "2 rows in" in invoke("cloud", file).stdout
 
 
+@pytest.mark.slow
 def test_a_cluster_that_does_not_answer(study, monkeypatch):
     monkeypatch.setattr(parallel, "CONNECT_TIMEOUT", 0.2)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://127.0.0.1:9")
@@ -333,6 +335,7 @@ def kept(folder, kind, extra=""):
     return folder / kind
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", STUDIES)
 def test_figures_of_a_kept_study(tmp_path, kind):
     folder = kept(tmp_path, kind)
@@ -345,6 +348,7 @@ def test_figures_of_a_kept_study(tmp_path, kind):
     assert rf.StudyFolder.load(folder).finished
 
 
+@pytest.mark.slow
 def test_figures_of_an_unfinished_study_elsewhere(tmp_path):
     folder = kept(tmp_path, "cloud", "runs_per_chunk = 3\n")
     next((folder / "parts").iterdir()).unlink()
@@ -358,6 +362,7 @@ def test_figures_of_an_unfinished_study_elsewhere(tmp_path):
     assert (tmp_path / "there" / "fragility.svg").read_text("utf-8").startswith("<?xml")
 
 
+@pytest.mark.slow
 def test_figures_replace_nothing_unless_told_to(tmp_path):
     folder = kept(tmp_path, "stripes")
     out = tmp_path / "there"
@@ -383,6 +388,7 @@ def test_figures_replace_nothing_unless_told_to(tmp_path):
     assert not Path(folder / "figures").exists()
 
 
+@pytest.mark.slow
 def test_figures_of_a_size_and_a_theme(tmp_path):
     folder = kept(tmp_path, "stripes")
     for size, width in (("column", 3.5), ("120x60", 120 / 25.4)):

@@ -167,6 +167,7 @@ def test_the_drawn_alternatives_tell_their_rotation_in_the_units_of_the_report(o
     np.testing.assert_allclose(found, turns, rtol=0.0, atol=5.1e-5)  # the last digit
 
 
+@pytest.mark.slow
 def test_the_report_has_all_alternatives(several, one, tmp_path):
     page = rf.write_report(several, tmp_path / "all.html", title="Three piers", notes="for the appendix")
     text = page.read_text("utf-8")
@@ -220,6 +221,7 @@ def invoke(*arguments):
     return CliRunner().invoke(app, ["compare", *arguments], env={"COLUMNS": "160"})
 
 
+@pytest.mark.slow
 def test_the_command_compares_files(files):
     result = invoke("a.toml", "b.toml", "el-centro-1940", "--report", "both.html")
     assert result.exit_code == 0, result.stderr

@@ -97,6 +97,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("model", "case"), CASES)
 def test_peaks_and_events(model, case):
     twin, run = both(model, ELEMENTS[case], 0.25 if case == "asymmetric" else 0.0)
@@ -110,6 +111,7 @@ def test_peaks_and_events(model, case):
     np.testing.assert_allclose(run.impact_times, found.impact_times, rtol=0.0, atol=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-C", "rigid-C"])
 @pytest.mark.parametrize("case", ["tendon", "hardening", "asymmetric"])
 def test_large_rotations(model, case):
@@ -120,6 +122,7 @@ def test_large_rotations(model, case):
         assert getattr(run, name) == pytest.approx(getattr(twin.result(), name), rel=1e-8, abs=1e-14), name
 
 
+@pytest.mark.slow
 def test_ground_reactions():
     """The elements pull the base towards their places in contact."""
     twin, run = both("4DOF-C-SI", ELEMENTS["asymmetric"], 0.25, SURGE)
@@ -146,6 +149,7 @@ def dissipated_by_dampers(p, layout, states):
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-C", "2DOF-S-BW"])
 @pytest.mark.parametrize("case", ["dampers", "asymmetric"])
 def test_energy_of_dampers(model, case):

@@ -59,6 +59,7 @@ def evaluated(requirements, space=SEARCH):
     return rf.best_design(search(requirements, space), requirements, COST, n_resamples=40)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("requirements", [[SLOW], [STRONG], [SLOW, STRONG]])
 def test_the_optimum_of_a_problem_in_closed_form_is_found(law, requirements):
     values, costs, governs = law.optimum(SEARCH, requirements)
@@ -87,6 +88,7 @@ def test_the_optimum_of_a_problem_in_closed_form_is_found(law, requirements):
     assert curve["cost"].min() == pytest.approx(exact.fun, rel=0.02)
 
 
+@pytest.mark.slow
 def test_the_probabilities_are_those_of_the_law(law, both):
     for row in both.designs.to_dict("records"):
         margins = {
@@ -104,6 +106,7 @@ def test_the_probabilities_are_those_of_the_law(law, both):
         assert row["dissipator_force"] == pytest.approx(0.1 * WEIGHT * row["dissipator_factor"])
 
 
+@pytest.mark.slow
 def test_the_trade_off_is_that_of_the_law(law, slow):
     prestress, force = (
         factors.ravel() * WEIGHT for factors in np.meshgrid(np.linspace(0, 0.4, 201), np.linspace(0, 0.2, 201))
@@ -133,6 +136,7 @@ def test_the_limit_that_governs_is_the_one_whose_loss_makes_it_cheaper(law, both
     assert limits["used"].max() <= 1.0
 
 
+@pytest.mark.slow
 def test_resamples_choose_anew(slow):
     found, again = slow, evaluated([SLOW])
     pd.testing.assert_frame_equal(found.designs, again.designs)
@@ -145,6 +149,7 @@ def test_resamples_choose_anew(slow):
     assert cautious["confidence"] >= 0.94
 
 
+@pytest.mark.slow
 def test_the_same_search_runs_the_same_designs_in_any_chunks(law):
     one = search([SLOW])
     two = rf.search_design(STRUCTURE, SUITE, SEARCH, [SLOW], COST, "2DOF-S", SCALES, workers=1)
@@ -154,6 +159,7 @@ def test_the_same_search_runs_the_same_designs_in_any_chunks(law):
     assert one.groupby("round")["structure"].nunique().tolist()[0] == SEARCH.n_first == 36
 
 
+@pytest.mark.slow
 def test_refinements_beat_the_values_given(law):
     costs = []
     for refinements in (0, 2, 4):
@@ -165,6 +171,7 @@ def test_refinements_beat_the_values_given(law):
     assert costs[0] > costs[1] >= costs[2]
 
 
+@pytest.mark.slow
 def test_targets_that_cannot_be_met_are_approached(law):
     hard = [rf.Requirement(0.005, 0.001, at=0.7)]
     found = evaluated(hard)
@@ -175,6 +182,7 @@ def test_targets_that_cannot_be_met_are_approached(law):
     assert not len(found.limits)
 
 
+@pytest.mark.slow
 def test_a_best_design_at_the_end_of_a_range_is_told(law):
     easy = [rf.Requirement(0.5, 0.5, at=0.2)]
     found = evaluated(easy)
@@ -374,6 +382,7 @@ def parts(path):
     return {each.name: each.read_bytes() for each in (path / "parts").iterdir()}
 
 
+@pytest.mark.slow
 def test_the_study_is_the_call_in_python(study, folder):
     _, table = folder
     held = rf.Restrained(rf.Frame(**FRAME), rf.Tendon(3e5, 2e6))
@@ -404,6 +413,7 @@ def test_rows_are_those_of_structures_built_that_way(folder):
         np.testing.assert_allclose(rows["resisting_moment"], held.rocking().resisting_moment, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stop", [1, 4, 6])
 def test_a_search_that_is_killed_is_resumed_to_the_same_bytes(study, folder, tmp_path, stop):
     whole, table = folder
@@ -419,6 +429,7 @@ def test_a_search_that_is_killed_is_resumed_to_the_same_bytes(study, folder, tmp
     assert parts(tmp_path / "kept") == parts(whole)
 
 
+@pytest.mark.slow
 def test_a_part_that_is_lost_is_computed_anew(study, folder, tmp_path, monkeypatch):
     whole, table = folder
     rf.run_study(study, tmp_path / "kept")
@@ -506,6 +517,7 @@ def invoke(*arguments):
     return CliRunner().invoke(app, [*map(str, arguments)], env={"COLUMNS": "300"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("level", "hazard"), [("level = 0.4\ntarget = [0.3, 0.1, 0.9]", ""), ("target = [1e-2, 1e-3, 0.1]", HAZARD)]
 )
@@ -555,6 +567,7 @@ def test_a_search_is_drawn(found):
     assert f"{found.governs} governs" in legend.get_title().get_text()
 
 
+@pytest.mark.slow
 def test_a_search_that_found_nothing_is_drawn(folder):
     hard = [rf.Requirement(0.001, 1e-3, at=1.0)]
     nothing = rf.best_design(folder[1], hard, rf.DesignCost(1.0), n_resamples=20)

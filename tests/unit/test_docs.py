@@ -26,6 +26,7 @@ PLACES = ("study", "engine", "papers.silva_stojadinovic_2024.population")  # of 
 GENERATED = ("gallery/", "../gallery/")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
 def test_code_of_a_page_runs_and_prints_what_it_says(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -74,6 +74,7 @@ def options(law):
     return {"impact": rf.Restitution(0.5, 1e-3)} if law == "passing" else {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("eccentricity", "ropes", "model", "n_modes", "law"), CASES)
 def test_against_the_twin(eccentricity, ropes, model, n_modes, law):
     twin = twin_of(eccentricity, ropes, model, n_modes, law)
@@ -97,6 +98,7 @@ def test_against_the_twin(eccentricity, ropes, model, n_modes, law):
     assert run.energy.closing_error < 1e-8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", ["rigid", "rigid-C"])
 def test_a_rigid_block_keeps_the_angular_momentum_of_each_side(label):
     """Housner's impact, whose coefficient depends on the edge that the rotation leaves."""
@@ -121,6 +123,7 @@ def newton_twin(kind, eccentricity, ropes):
     return newton.integrate(kind(masses), shaking(duration=3.0), 0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("label", "kind"), [("MDOF-S", newton.Simplified), ("MDOF-C", newton.Complete)])
 @pytest.mark.parametrize(("eccentricity", "ropes"), [(-0.25, "two")])
 def test_against_the_masses_and_tendons_in_place(label, kind, eccentricity, ropes):

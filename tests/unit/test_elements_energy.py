@@ -36,6 +36,7 @@ def held(elements, eccentricity=0.0):
     return rf.Restrained(rf.Eccentric(FRAME, eccentricity) if eccentricity else FRAME, elements)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eccentricity", [0.0, 0.3, -0.31])
 @pytest.mark.parametrize("name", list(SETS))
 @pytest.mark.parametrize("model", ["MDOF-S", "rigid"])

@@ -27,6 +27,7 @@ def lumped_column(tip, parts=400):
     return values[order] ** -0.5, excitation**2 / masses.sum(), moment / excitation, excitation * shapes[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tip", [0.5, 5.0])
 def test_the_cantilever_with_a_tip_mass_is_the_limit_of_many_masses(tip):
     roots, mass, height, top = modes_of_tipped_cantilever(tip, 3)

@@ -62,6 +62,7 @@ def test_capacities_without_censoring_are_their_moments():
     assert fit_capacities(im, np.zeros(4)).beta == fit.beta
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(
     st.lists(st.floats(-3.0, 3.0), min_size=3, max_size=15).filter(lambda x: np.std(x) > 0.05),

@@ -112,6 +112,7 @@ def test_the_band_of_a_rate_is_that_of_parameters_drawn_from_t():
     assert caught.value.field == "confidence"
 
 
+@pytest.mark.slow
 def test_one_recording_gives_no_band():
     one = np.zeros(IM.size)
     for fit in (rf.fit_logistic(IM, FALLS, one), rf.fit_cloud(IM, IM * np.exp(SCORE), one)):
@@ -171,6 +172,7 @@ def test_clouds_take_the_recordings_of_the_table(runs):
     assert blind.outcomes.rotation.c1 == fit.outcomes.rotation.c1
 
 
+@pytest.mark.slow
 def test_a_rate_in_sa_at_5_percent_is_that_of_an_own_integral(runs):
     """Sa(T1) from a step-by-step integration of the oscillator, a logistic curve by SciPy, and the trapezoidal rule."""
     from scipy.optimize import minimize

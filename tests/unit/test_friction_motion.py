@@ -130,6 +130,7 @@ def largest(run, window):
     return demand[counted].max()
 
 
+@pytest.mark.slow
 @EACH
 @pytest.mark.parametrize("stride", [1, 6])
 def test_peaks_between_nodes_are_those_of_a_dense_record(model, options, stride):
@@ -148,6 +149,7 @@ def test_peaks_between_nodes_are_those_of_a_dense_record(model, options, stride)
         assert reached <= run.required_friction
 
 
+@pytest.mark.slow
 @EACH
 def test_sliding_starts_where_the_demand_passes_the_coefficient(model, options):
     run, dense = (simulate(STRUCTURE, motion, model, **options) for motion in (SHAKING, SHAKING.refined(64)))

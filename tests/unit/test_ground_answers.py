@@ -197,6 +197,7 @@ def on_springs(wall, ground, record, product):
     return largest
 
 
+@pytest.mark.slow
 def test_the_moment_of_the_heave_is_left_out_and_small():
     """The weight's moment is L_0^r (g + a_v) θ; L_0^r z'' θ, of the same order, changes θ_max by less than 1 %."""
     wall = rf.WallFrame(

@@ -82,6 +82,7 @@ GAZETAS = BED + 'shear_modulus = 2e7\npoisson_ratio = 0.3\nmethod = "gazetas"\n'
 SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "message", "field"),
     [

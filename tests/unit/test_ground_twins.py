@@ -54,6 +54,7 @@ def test_springs_against_an_integration_without_phases():
     np.testing.assert_allclose(run.y, plain, atol=2e-6 * abs(plain).max())
 
 
+@pytest.mark.slow
 def test_springs_that_slide_against_an_integration_without_phases():
     p, dt = FRAME.rocking(1), 0.01
     twin = SpringTwin.of(p, (-1.1, 1.1), 3e8, 2e6, 6e4, friction=(0.15, 0.25))

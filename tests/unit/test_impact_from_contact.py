@@ -148,6 +148,7 @@ SIXTH = {**FLEXURE, "aspect_ratio": 5.0}
 FOURTH = {**FLEXURE, "period": 0.5}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{}, SIXTH])
 def test_stiff_ground_without_rebound_gives_the_forces_of_the_law(changes):
     ratios, _ = over_the_law(*on_a_mat(**changes), 20.0, 0.7)
@@ -167,6 +168,7 @@ def test_rebound_leaves_the_rotation_of_a_flexural_frame_and_raises_its_base_she
     assert shear_frame["max_base_shear"].median() == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_springs_let_go_where_the_law_pulls_the_base_down():
     """Then both forces of structure #4 are smaller on springs, at nearly the same rotation."""
     ratios, pressed = over_the_law(*on_a_mat(**FOURTH), 20.0, 0.05)

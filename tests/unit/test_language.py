@@ -109,6 +109,7 @@ def known():
     return used, used | {text for text in labels() if has_word(text)}
 
 
+@pytest.mark.slow
 def test_every_source_is_read(known):
     texts, _ = known
     assert {"Length of the run", "{n} records", "{n} record", "Largest values", "Keep as {name}"} <= texts
@@ -142,6 +143,7 @@ def values_in(page):
     return re.findall(r'data-of="(\w+)" data-value="([^"]*)"', page)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", RESULTS)
 def test_a_report_has_no_english_text_left_and_the_same_values(kind, tmp_path):
     result = RESULTS[kind]()
@@ -245,6 +247,7 @@ def test_unknown_styles_are_refused(option, value):
     assert caught.value.field == option
 
 
+@pytest.mark.slow
 def test_commands_write_reports_in_a_language(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     pier = str(EXAMPLES / "bridge_pier.toml")

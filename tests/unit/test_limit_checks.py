@@ -239,6 +239,7 @@ def test_what_cannot_be_checked_is_refused(result):
         rf.check(rf.simulate(FRAME, PULSE), {"friction": 0.5})
 
 
+@pytest.mark.slow
 def test_the_report_of_a_run_has_its_checks(tmp_path):
     found = [rf.simulate(FRAME, PULSE, model) for model in ("2DOF-S", "fixed")]
     table = read(rf.write_report(found, tmp_path / "r.html", limits=rf.CheckLimits(drift_ratio=1e-3))).tables["limits"]

@@ -40,6 +40,7 @@ def reported(tmp_path_factory):
     return [(test, outcome, worker) for worker, outcome, test in lines]
 
 
+@pytest.mark.slow
 def test_a_test_that_kills_its_worker_fails_once_and_all_others_run(reported):
     failed = sorted(test for test, outcome, _ in reported if outcome == "FAILED")
     passed = sorted(test for test, outcome, _ in reported if outcome == "PASSED")

@@ -71,6 +71,7 @@ def test_a_label_and_its_model_are_one(model):
 WORDS = st.from_regex(r"(([0-9]{0,3}|M)DOF-?)?(S|C|fixed|rigid)(-(SI|E|C|S|BW))*", fullmatch=True)
 
 
+@pytest.mark.slow
 @given(WORDS)
 def test_what_is_read_is_written_the_same(label):
     try:

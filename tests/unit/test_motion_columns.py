@@ -420,6 +420,7 @@ def crafted(folder, last_row, dimension="", columns=""):
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="the memory of a process is limited as on Unix")
 @pytest.mark.parametrize(
     ("last_row", "more", "said"),

@@ -125,6 +125,7 @@ def test_a_mean_that_explains_the_difference_is_named(tmp_path):
     assert motion.pga == pytest.approx(0.42125)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["txt", "at2"])
 def test_crafted_text(tmp_path, suffix):
     command = [sys.executable, "-c", READ, str(tmp_path), json.dumps(CRAFTED), suffix]

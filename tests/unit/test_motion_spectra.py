@@ -43,6 +43,7 @@ def twin(motion, period, zeta):
     return sd, sv
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.7])
 @pytest.mark.parametrize("period", [0.03, 0.1, 0.21, 1.0, 7.0])
 def test_peaks_against_adaptive_integration(period, zeta):

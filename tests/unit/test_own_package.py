@@ -89,6 +89,7 @@ assert rf.simulate(tank, motion, ground=ground).element_energy[0] > 0.0
 """
 
 
+@pytest.mark.slow
 def test_in_python(site, here):
     run(here, "-c", READ, site=site)
     assert "no installed package registers" in run(
@@ -106,6 +107,7 @@ print(json.dumps([[each.exit_code, " ".join(each.output.split())] for each in do
 """
 
 
+@pytest.mark.slow
 def test_commands(site, here):
     """All in one program, since each would take seconds to start."""
     wrong = (here / "tank.toml").read_text("utf-8").replace("2e7", '"stiff"')
@@ -162,11 +164,13 @@ assert whole["error"].isna().all() and (whole["n_uplifts"] > 0).any()
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("study", ["both_ways", "stripes"])
 def test_a_study_that_is_stopped_and_resumed_has_the_same_table(study, site, here):
     run(here, "-c", RESUMED.format(study=study), site=site)
 
 
+@pytest.mark.slow
 def test_a_study_is_not_resumed_with_another_source(here, tmp_path_factory):
     site = tmp_path_factory.mktemp("changing")
     install(site)

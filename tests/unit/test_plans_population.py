@@ -94,6 +94,7 @@ def test_rows_are_pairs_of_single_runs(plan, pairs):
                 assert getattr(row, name + suffix) == pytest.approx(getattr(run, name), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_second_mode_and_its_combination(plan, pairs):
     for row in pairs.head(6).itertuples():
         drawn = draw_prototype(7, row.pair, 4)
@@ -118,6 +119,7 @@ def test_second_mode_and_its_combination(plan, pairs):
         assert row.uplift_acceleration == pytest.approx(p.m_tot * 9.81 * p.half_width / p.l0r)
 
 
+@pytest.mark.slow
 def test_chunks_and_their_sizes_change_nothing(plan, pairs):
     assert (plan.n_chunks, plan.n_runs) == (3, 48)
     copied = pickle.loads(pickle.dumps(plan))
@@ -142,6 +144,7 @@ def test_free_vibration_reaches_the_runs(plan):
         assert row.end_time_2dof == row.end_time_mdof
 
 
+@pytest.mark.slow
 def test_pair_that_cannot_be_solved_is_a_row():
     absurd = rf.GroundMotion([0.0, 1.0, 0.0], 1e6, "absurd")
     table = run_population(Suite([absurd]), 3)
@@ -213,6 +216,7 @@ def test_intervals_are_those_of_scipy():
         assert row[f"{name}_high"] == pytest.approx(interval.high, abs=0.1 * width)
 
 
+@pytest.mark.slow
 def test_intervals_are_seeded_and_cover():
     frame = made_up()
     one, two, other = (population_statistics(frame, n_resamples=100, seed=s).agreement for s in (1, 1, 2))

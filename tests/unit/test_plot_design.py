@@ -79,6 +79,7 @@ def test_answers_that_are_none():
     assert not lines(axes, "_target")
 
 
+@pytest.mark.slow
 def test_rates_are_drawn_in_logarithms():
     table = designs(value="rate")
     (axes,) = drawn(rf.plot_design(table, 0.05)).axes
@@ -157,6 +158,7 @@ def invoke(*arguments):
     return CliRunner().invoke(app, [*map(str, arguments)], env={"COLUMNS": "240"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("question", "hazard", "words", "target"),
     [

@@ -74,6 +74,7 @@ def test_fragility_of_fits_alone_with_another_threshold(cloud):
     assert max(reached) >= min(reached) >= 0.99
 
 
+@pytest.mark.slow
 def test_where_none_rocks_the_line_is_flat_and_the_cloud_empty(cloud):
     still = cloud[cloud["max_rotation"] <= 1e-4]
     axes = drawn(rf.plot_fragility(still, confidence=0.9, overturning=True, bins=3)).axes[0]
@@ -89,6 +90,7 @@ def test_where_none_rocks_the_line_is_flat_and_the_cloud_empty(cloud):
 # Figs. 6 and 7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["max_rotation", "max_top_displacement"])
 def test_clouds_hold_the_runs_that_rocked_and_stand(cloud, quantity):
     figure = drawn(rf.plot_clouds(cloud, quantity))
@@ -156,6 +158,7 @@ def renamed(table, column, count):
     return pd.concat([table[:6].assign(**{column: f"n{i}"}) for i in range(count)], ignore_index=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "said"),
     [
@@ -196,6 +199,7 @@ def test_what_cannot_be_drawn_is_named(cloud, pairs, ladders, call, said):
         call(cloud, pairs, ladders)
 
 
+@pytest.mark.slow
 def test_ida_curves_break_where_runs_overturn(ladders):
     figure = drawn(rf.plot_ida(ladders, "pgv"))
     left, right = figure.axes
@@ -291,6 +295,7 @@ def test_stripes_with_their_curve(stripes):
     assert not axes.collections
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "draw"), [("stripes", rf.plot_stripes), ("ladders", rf.plot_ida)])
 def test_bands_count_recordings_not_runs(kind, draw, request):
     """Nine copies of each run under its recording: as independent ones they make a band three times as narrow."""

@@ -139,6 +139,7 @@ def test_springs_never_pull_and_so_never_warn(hops):
     assert "Give simulate a Ground with springs, on which the base can leave the ground." in rigid.warnings[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", [False, True])
 def test_loops_of_a_base_on_springs_meet_its_equation_of_motion(held):
     fuses = [rf.YieldingDissipator(5e7, 2e5, 0.02, x) for x in (-1.0, 0.5)]

@@ -135,6 +135,7 @@ def test_true_peaks_are_marked_written_and_within_the_axes(figure, four, panel, 
     assert figure.axes[4].get_xlim() == (0.0, four[0].end_time)
 
 
+@pytest.mark.slow
 def test_nothing_outside_the_panels_touches_them_or_leaves_the_figure(four):
     labels = ["a name that is rather long", "another one, just as long as it", "third", "the structure on a fixed base"]
     for figure in (plot_history(four), plot_history(four, labels), plot_history([*four, *four])):
@@ -221,6 +222,7 @@ def test_the_settings_of_the_caller_stay_as_they_are(four):
     assert figure.axes[0].yaxis.label.get_fontsize() == 17.0
 
 
+@pytest.mark.slow
 def test_matplotlib_is_imported_late_and_pyplot_never():
     code = (
         "import sys, rockflex\n"
@@ -347,6 +349,7 @@ def test_a_fall_that_the_record_cuts_short_squashes_nothing_either(returned):
     assert any(line.get_marker() == "^" for line in axes.get_lines())
 
 
+@pytest.mark.slow
 def test_a_run_beyond_balance_from_the_start_is_shown_whole():
     start = rf.InitialState(rotation=1.2 * BALANCE)
     response = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=start)

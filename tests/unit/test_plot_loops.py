@@ -65,6 +65,7 @@ def test_a_run_is_drawn_without_its_states_in_contact(run):
     assert rf.plot_loops(run, title="mine $1").legends[0].get_title().get_text() == r"mine \$1"
 
 
+@pytest.mark.slow
 def test_a_base_on_springs_is_drawn_with_its_edges():
     springs = rf.Springs([-ARM, 0.3, ARM], 1e8, 2e6)
     ground = rf.Ground(springs=springs, base_inertia=2e4)

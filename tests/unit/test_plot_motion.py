@@ -16,6 +16,7 @@ SUITE = rf.load_suite("fema-p695-far-field")
 TARGET = rf.ec8_spectrum(2.5, "C")
 
 
+@pytest.mark.slow
 def test_motion_draws_its_integrals_and_its_spectrum():
     figure = drawn(plot_motion(RECORD))
     a, spectrum, v, d = figure.axes

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from matplotlib.colors import to_hex
 
 import rockflex as rf
@@ -8,6 +9,7 @@ from rockflex.papers.silva_stojadinovic_2024.population import population_statis
 from rockflex.plot._figures import BLUE
 
 
+@pytest.mark.slow
 def test_population_bars_count_the_pairs(pairs):
     figure = drawn(rf.plot_population(pairs))
     shear, flexure = ((pairs["behaviour"] == name).sum() for name in ("shear", "flexure"))
@@ -61,6 +63,7 @@ def test_agreement_shows_every_pair_that_stands(pairs):
     assert [text.get_text() for text in key.artists[0].get_texts()] == ["5", "6", "7", "8", "9", "10"]
 
 
+@pytest.mark.slow
 def test_pairs_without_results_are_told_and_empty_groups_drawn(pairs):
     some = pairs[:8].copy()
     some["status_mdof"] = ["rocking"] * 5 + ["overturned"] * 2 + [None]

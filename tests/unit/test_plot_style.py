@@ -208,6 +208,7 @@ def test_every_figure_is_here():
     assert all("size" in inspect.signature(getattr(rf, name)).parameters for name in public)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, monkeypatch):
     figure = getattr(rf, name)(*given(name), size="column")
@@ -220,6 +221,7 @@ def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, mo
     assert [(a, b) for (a, p), (b, q) in combinations(texts, 2) if overlaps(p, q)] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("size", "width"), [("column", 3.5), ("page", 7.2), ((5.0, 2.5), 5.0), (None, 7.2)])
 def test_the_size_is_a_name_or_inches(size, width):
     figure = rf.plot_motion(PULSE, size=size)
@@ -241,6 +243,7 @@ def sizes(figure):
     return [each.get_fontsize() for each in (figure._suptitle, axes.yaxis.label, tick, axes._right_title)]
 
 
+@pytest.mark.slow
 def test_letters_are_those_of_the_caller_or_of_the_size():
     assert sizes(rf.plot_motion(PULSE)) == pytest.approx([9.0, 9.0, 8.0, 8.0])
     assert sizes(rf.plot_motion(PULSE, size="page")) == pytest.approx([9.0, 9.0, 8.0, 8.0])
@@ -254,6 +257,7 @@ def test_letters_are_those_of_the_caller_or_of_the_size():
         rf.plot_history(responses(), size="column")
 
 
+@pytest.mark.slow
 def test_ticks_keep_the_settings_when_the_figure_is_drawn_later(tmp_path):
     with mpl.rc_context({"xtick.labelsize": 13.0, "ytick.labelsize": 13.0}):
         figure = rf.plot_motion(PULSE)
@@ -283,6 +287,7 @@ def test_on_a_dark_background_black_turns_into_the_colour_of_the_text():
     assert to_hex(figure.axes[0].get_lines()[0].get_color()) == "#ffffff"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_in_every_theme_what_is_written_stands_out(name, given):
     for theme, bright in (("dark", True), ("journal", False)):
@@ -347,6 +352,7 @@ def figure():
     return figure
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "start"), [("a.png", b"\x89PNG"), ("b/c/a.pdf", b"%PDF"), ("a.svg", b"<?xml"), ("A.PNG", b"\x89PNG")]
 )
@@ -433,6 +439,7 @@ def test_a_figure_shows_itself_as_a_sharp_picture():
     assert size_of(png) == pytest.approx((2 * size["width"], 2 * size["height"]), abs=1)
 
 
+@pytest.mark.slow
 def test_the_settings_of_the_caller_change_nothing():
     figure = rf.plot_motion(PULSE)
     before = figure._repr_png_()

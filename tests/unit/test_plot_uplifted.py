@@ -173,6 +173,7 @@ def test_each_side_of_an_eccentric_base_has_its_own_law():
     assert any("(right)" in text and "(left)" in text for text in notes(right))
 
 
+@pytest.mark.slow
 def test_the_frequency_equation_about_either_edge():
     p = rf.Eccentric(FRAME, 0.2).rocking()
     for side in (1, -1, None):

@@ -65,6 +65,7 @@ def document(file):
         return archive.read("project.toml").decode()
 
 
+@pytest.mark.slow
 def test_a_project_comes_back_equal_and_gives_equal_results(done, tmp_path):
     for project in (PROJECT, done):
         path = project.save(tmp_path / "pier")
@@ -91,6 +92,7 @@ def test_a_structure_may_start_from_a_state(tmp_path):
     assert again.comparison().runs["max_rotation"].tolist() == runs
 
 
+@pytest.mark.slow
 def test_results_are_those_of_the_functions_it_stands_for(done):
     found = rf.simulate_set(TIED, RECORDS, "MDOF-S", "ec8", (0.2, 2.0), ground=BED)
     runs = done.results.runs.query("structure == 'tied, on soil'")
@@ -203,6 +205,7 @@ def test_results_of_other_inputs_are_refused(done):
     assert replace(done, head={"title": "Another"}).results == done.results  # which no result depends on
 
 
+@pytest.mark.slow
 def test_reports_have_head_checks_and_alternatives(done, tmp_path):
     together, one = done.report(tmp_path / "all.html"), done.report(tmp_path / "one.html", "tied, on soil")
     for page in (together, one):

@@ -113,6 +113,7 @@ stiffness = 1e7
 """
 
 
+@pytest.mark.slow
 def test_an_element_and_a_reader_in_the_package(copied, monkeypatch):
     assert [path for path, _ in blocks_of_files()] == ["modal/_law_bars.py", "motion/_tsv.py"]
     (copied / "held.toml").write_text(HELD, "utf-8")

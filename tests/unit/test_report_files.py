@@ -34,6 +34,7 @@ def no_browser(monkeypatch, tmp_path):
     monkeypatch.delenv("ROCKFLEX_BROWSER", raising=False)
 
 
+@pytest.mark.slow
 def test_the_head_says_who_made_it(held, tmp_path):
     text = rf.write_report(held, tmp_path / "r.html", structure=HELD, date="May 2030", **HEAD).read_text("utf-8")
     for word in ("Viaduct A7", "M. Rossi &amp; sons", "K. Weiß", "Pier &lt;3&gt;", "May 2030", "Checked by"):
@@ -46,6 +47,7 @@ def test_the_head_says_who_made_it(held, tmp_path):
     assert not (tmp_path / "s.html").exists()
 
 
+@pytest.mark.slow
 def test_the_appendix_has_loops_of_every_run_that_lifts(held, tmp_path):
     one = rf.write_report(held, tmp_path / "r.html", structure=HELD).read_text("utf-8")
     more = rf.write_report(held, tmp_path / "r.html", structure=HELD, appendix=True).read_text("utf-8")
@@ -81,6 +83,7 @@ def test_sections_of_a_tower_at_both_ends(tmp_path):
     assert [number(row[1][0]) for row in rows] == pytest.approx(ring, rel=5.1e-4)
 
 
+@pytest.mark.slow
 def test_a_document_of_word_has_the_same_contents(held, tmp_path):
     docx = pytest.importorskip("docx")
     path = rf.write_report(
@@ -152,6 +155,7 @@ def test_a_browser_that_prints_nothing_is_told(held, tmp_path, monkeypatch):
     assert not (tmp_path / "r.pdf").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.web
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="needs a browser of the Chromium family")
 def test_a_pdf_has_the_sheet_and_numbered_pages(held, tmp_path):
@@ -178,6 +182,7 @@ appendix = true
 """
 
 
+@pytest.mark.slow
 def test_the_head_from_a_structure_file_and_from_flags(tmp_path):
     file, page = tmp_path / "pier.toml", tmp_path / "r.html"
     file.write_text(FILE, "utf-8")

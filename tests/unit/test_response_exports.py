@@ -155,6 +155,7 @@ def test_without_xarray_it_says_what_to_install(response, tmp_path, monkeypatch)
         response.to_netcdf(tmp_path / "run.nc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["mat", "nc"])
 def test_histories_of_the_command_line(form, tmp_path):
     if form == "nc":

@@ -96,6 +96,7 @@ def assert_same(back, run):
     assert (one.complete, one.bouc_wen, one.integrated) == (other.complete, other.bouc_wen, other.integrated)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("structure", "model", "options"), RUNS.values(), ids=RUNS)
 def test_what_is_saved_comes_back(tmp_path, structure, model, options):
     run = rf.simulate(structure, MOTION, model, **options)
@@ -173,6 +174,7 @@ def test_a_missing_file(tmp_path):
         rf.Response.load(tmp_path / "none.npz")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cut", [100, 0.5, 0.99])
 def test_half_a_file(tmp_path, cut):
     path = rf.simulate(FRAME, MOTION).save(tmp_path / "run")
@@ -207,6 +209,7 @@ def test_any_other_file(tmp_path):
 SOUND = {"simplified": ("MDOF-S", {}), "complete": ("2DOF-C", {"bouc_wen": SPRING, "impact": rf.Restitution(0.5)})}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", SOUND)
 def test_any_damage_is_named(tmp_path, kind):
     """Whatever was done to a file, it is refused as no saved response, or is sound."""

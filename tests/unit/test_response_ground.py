@@ -19,6 +19,7 @@ def motion(suite):
     return rf.GroundMotion(factor * record.acceleration[cut], record.dt)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suite", RECORDS)
 @pytest.mark.parametrize(("label", "kind", "bound"), [("MDOF-S", Simplified, 1e-9), ("MDOF-C", Complete, 1e-9)])
 def test_against_the_masses_in_coordinates_of_the_ground(label, kind, bound, suite):

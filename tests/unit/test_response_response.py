@@ -146,6 +146,7 @@ def test_tables_hold_responses(response, peaks_only):
     assert table.copy(deep=True)["run"][1] is peaks_only
 
 
+@pytest.mark.slow
 def test_type_checkers_know_the_quantities(tmp_path):
     path = tmp_path / "user.py"
     path.write_text(

@@ -60,6 +60,7 @@ def page(three, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_the_peaks_are_those_of_the_responses(page, three):
     _, *rows = read(page).tables["peaks"]
     assert [row[0][0] for row in rows] == list(MODELS)
@@ -121,11 +122,13 @@ def test_the_page_needs_nothing_else(page):
     assert re.search(r"inputs [0-9a-f]{12}<", text)
 
 
+@pytest.mark.slow
 def test_equal_inputs_give_equal_pages(page, three, tmp_path):
     again = rf.write_report(three, tmp_path / "a.html", structure=FRAME, motion=PULSE, friction=0.5, date="2030-01-02")
     assert again.read_bytes() == page.read_bytes()
 
 
+@pytest.mark.slow
 def test_the_scale_is_found(report):
     found = runs(FRAME, PULSE.scaled(1.3), ["2DOF-S"])
     for motion in (PULSE, PULSE.scaled(1.3)):
@@ -141,6 +144,7 @@ def test_without_motion_and_structure_the_history_tells(three, report):
     assert facts["n_modes"][2] == 1
 
 
+@pytest.mark.slow
 def test_a_page_of_elements_springs_and_slip(report):
     found = runs(HELD, PULSE.scaled(2.0), ["2DOF-S"], ground=SPRINGS)
     reader = report(found, structure=HELD, motion=PULSE)
@@ -156,6 +160,7 @@ def test_a_page_of_elements_springs_and_slip(report):
     assert cells(row)["max_edge_settlement"][1] == found[0].max_edge_settlement
 
 
+@pytest.mark.slow
 def test_what_would_take_minutes_is_left_out(monkeypatch, report):
     found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
     text = report(found).text
@@ -185,6 +190,7 @@ def test_warnings_and_notes_are_on_the_page(report):
     assert "Note 2." in text
 
 
+@pytest.mark.slow
 def test_of_many_warnings_the_first_are_listed(report):
     forces = [1e3 * (801 + k) for k in range(6)]
     held = [rf.Restrained(PIER, rf.Tendon(800e3, 20e6, yield_force=force)) for force in forces]
@@ -198,12 +204,14 @@ def test_of_many_warnings_the_first_are_listed(report):
     assert f"2DOF-S (1), 2DOF-S (2): {warnings_of_run(pulled[0], KN)[0]}" in alike
 
 
+@pytest.mark.slow
 def test_many_notes_are_run_together(three, report):
     text = report(three, notes=[f"n{k}\n" for k in range(60)]).text
     assert "n0 • n1 • n2" in text
     assert "n58 • n59" in text
 
 
+@pytest.mark.slow
 def test_a_rigid_block(report):
     block = rf.rigid_block(0.2, 3.0, 20e3)
     reader = report(runs(block, PULSE, ["rigid"]), structure=block)
@@ -213,6 +221,7 @@ def test_a_rigid_block(report):
     assert "modes" not in reader.tables
 
 
+@pytest.mark.slow
 def test_names_that_are_markup_and_models_that_occur_twice(report):
     odd = rf.GroundMotion(PULSE.acceleration, PULSE.dt, name="<b>a_b</b> & $x$")
     found = runs(FRAME, odd, ["2DOF-S"]) + runs(FRAME, odd, ["2DOF-S"], impact=rf.Restitution(0.8))
@@ -234,6 +243,7 @@ def test_numbers_have_three_digits(value, text):
     assert rounded_number(value) == text
 
 
+@pytest.mark.slow
 def test_re_centring_is_that_of_a_base_at_rest(report):
     """A record that ends in the middle of a vibration says nothing of what remains."""
     fused = rf.Restrained(PIER, [rf.YieldingDissipator(60e6, 150e3, 0.02, x) for x in (-1.5, 1.5)])
@@ -255,6 +265,7 @@ def test_re_centring_is_that_of_a_base_at_rest(report):
     assert abs(value) > 1e-4
 
 
+@pytest.mark.slow
 def test_the_static_bearing_pressure_stands_beside_that_of_a_spring(report):
     bed = rf.winkler_bed(1.8, 4.0, 60e6, n=8).damped(0.3, 500e3)
     (run,) = runs(PIER, PULSE, ["2DOF-S"], ground=rf.Ground(springs=bed, base_inertia=5e5))
@@ -263,6 +274,7 @@ def test_the_static_bearing_pressure_stands_beside_that_of_a_spring(report):
     assert rounded_number(run.soil_pressure.max() / 1e3) in text
 
 
+@pytest.mark.slow
 def test_the_page_says_what_forces_with_an_impact_law_leave_out(page, tmp_path):
     """On springs, and on a fixed base, no law acts and nothing is said."""
     assert "without the impulse of impacts" in page.read_text("utf-8")
@@ -320,6 +332,7 @@ def test_values_out_of_range(one, tmp_path):
     refused("notes", "texts", one, path, notes=[3])
 
 
+@pytest.mark.slow
 def test_paths_that_are_no_page(one, tmp_path):
     refused("path", "folder", one, tmp_path)
     refused("path", ".html", one, tmp_path / "r.txt")
@@ -328,6 +341,7 @@ def test_paths_that_are_no_page(one, tmp_path):
     refused("path", "Cannot write to", one, tmp_path / "file" / "r.html")
 
 
+@pytest.mark.slow
 def test_folders_are_made_and_files_replaced(one, tmp_path):
     path = tmp_path / "a" / "b" / "r.HTML"
     rf.write_report(one, path, date="1")
@@ -337,6 +351,7 @@ def test_folders_are_made_and_files_replaced(one, tmp_path):
     assert [each.name for each in path.parent.iterdir()] == ["r.HTML"]
 
 
+@pytest.mark.slow
 def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     path = rf.write_report(one, tmp_path / "r.html")
     before = path.read_bytes()
@@ -350,6 +365,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     assert path.read_bytes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("free", [0.0, 3.0, "settle"])
 @pytest.mark.parametrize("name", JUMPS)
 def test_a_record_may_end_with_a_jump(name, free, report):
@@ -371,6 +387,7 @@ def with_vertical(motion, factor):
     return rf.GroundMotion(motion.acceleration, motion.dt, name="named", vertical=factor * motion.acceleration)
 
 
+@pytest.mark.slow
 def test_the_vertical_component_is_compared(tmp_path):
     path = tmp_path / "r.html"
     plain, *shaken = (rf.simulate(FRAME, with_vertical(PULSE, k), "2DOF-S", output="history") for k in (0.0, 0.4, 0.5))
@@ -389,6 +406,7 @@ def test_the_vertical_component_is_compared(tmp_path):
     assert facts["pva"][2] == pytest.approx(0.8 * PULSE.pga, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_margin_of_an_eccentric_base_is_that_of_the_side_it_moves_to(report):
     whole = FRAME.rocking()
     tipped = rf.Eccentric(FRAME, 0.3 * whole.half_width)
@@ -437,6 +455,7 @@ def test_inputs_of_some_runs_have_their_labels(tmp_path):
     assert found["Impact law"].endswith(("Eq. 25) (2DOF-S (1), 2DOF-S (3))", "Eq. 25)"))
 
 
+@pytest.mark.slow
 def test_inputs_of_all_runs_have_none(tmp_path):
     found = lines(rf.write_report(runs(PIER, PULSE, ["2DOF-S", "MDOF-S"], ground=SPRINGS), tmp_path / "r.html"))
     assert found["Friction"] == "the base slides at μ = 0.4"
@@ -445,6 +464,7 @@ def test_inputs_of_all_runs_have_none(tmp_path):
     assert "Initial state" not in found
 
 
+@pytest.mark.slow
 def test_the_start_is_on_the_page(tmp_path):
     quiet, starts = rf.quiet_motion(6.0), (rf.InitialState(0.05), rf.InitialState(rotation_velocity=-0.1), None)
     found = [response_of(FRAME, quiet, "2DOF-S", initial=start) for start in starts]
@@ -461,6 +481,7 @@ def test_the_start_is_on_the_page(tmp_path):
     assert read(rf.write_report(block, path)).tables["checks"][1][1][0] == "starts uplifted"
 
 
+@pytest.mark.slow
 def test_the_start_on_springs_counts_from_rest(tmp_path):
     still = response_of(FRAME, PULSE, "2DOF-S", ground=LIGHT)
     assert abs(still.rotation[0]) > 1e-6  # the springs are not symmetric
@@ -469,6 +490,7 @@ def test_the_start_on_springs_counts_from_rest(tmp_path):
     assert found["Initial state"] == "θ = 2.00 mrad, D1 = 3.00 mm (2DOF-S (2))"
 
 
+@pytest.mark.slow
 def test_the_hash_tells_inputs_apart(monkeypatch):
     quick = rf.quiet_motion(0.2)
     shaken = rf.GroundMotion(PULSE.acceleration[:40], PULSE.dt, vertical=PULSE.acceleration[:40])
@@ -496,6 +518,7 @@ def test_the_hash_tells_inputs_apart(monkeypatch):
     assert hashes(response_of(FRAME, quick, "2DOF-S", impact=rf.Restitution(0.5)), quick) == found[6]
 
 
+@pytest.mark.slow
 def test_peaks_of_ground_motion_are_those_of_the_run_if_all_overturn(tmp_path):
     late = np.concatenate([rf.one_sine_pulse(8.0, 2.5).acceleration, [0.0, 30.0, 0.0, 0.0]])
     motion = rf.GroundMotion(late, rf.one_sine_pulse(8.0, 2.5).dt)

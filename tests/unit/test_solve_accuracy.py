@@ -29,6 +29,7 @@ def errors(motion, **changes):
     return relative(mine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["FF-2-a", "FF-17-b"])
 def test_records(name):
     assert errors(load_suite("fema-p695-far-field")[name]) < 1e-11

@@ -57,6 +57,7 @@ def rate_and_slenderness(p):
     return math.sqrt(p.l0r * GRAVITY / p.i_theta), p.m_tot * p.half_width / p.l0r
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 2, 3])
 def test_rocking_shorter_than_a_sample(seed):
     """White noise sampled at a sixth of the period, a third above what lifts the base."""
@@ -232,6 +233,7 @@ def test_pushed_off_with_a_velocity():
         assert run.status == "rocking"
 
 
+@pytest.mark.slow
 def test_rest_stays_rest():
     run = simulate(Frame(**frame()), quiet_motion(1.0), free_vibration=3600.0)
     assert (run.status, run.n_uplifts, run.max_rotation, run.max_base_shear) == ("no_uplift", 0, 0.0, 0.0)

@@ -46,6 +46,7 @@ def test_where_two_eigenvalues_merge():
     assert_same_peaks(run, twin, 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [1e-12, 1e-9, 1e-7, 1e-5, 1e-3, -1e-12, -1e-9, -1e-7, -1e-5, -1e-3])
 def test_close_to_the_merger(offset):
     """The answer moves by no more than the damping does."""

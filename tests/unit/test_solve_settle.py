@@ -133,6 +133,7 @@ def test_motions_beyond_any_number_end():
             assert not any(math.isnan(value) for value in peaks.values() if isinstance(value, float))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("stiffness_ratio", [0.0, np.inf])
 def test_chattering(seed, stiffness_ratio):

@@ -25,6 +25,7 @@ def wall_frame(**changes):
     return rf.WallFrame(**(GOOD | changes))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("alpha", [0.3, 2.0, 6.0, 15.0])
 def test_frequencies_solve_the_differential_equation(alpha):
     omega = wall_frame(stiffness_parameter=alpha).modal().omega

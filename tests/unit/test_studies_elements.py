@@ -82,6 +82,7 @@ def test_every_study_takes_elements(kind):
     assert (row.status, row.max_rotation) == (alone.status, pytest.approx(alone.max_rotation, rel=1e-12))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["cloud", "monte_carlo"])
 def test_a_cluster_computes_the_same(kind, cluster: "Cluster"):
     study = STUDIES[kind]

@@ -136,6 +136,7 @@ def altered(runs, **changes):
     return runs[runs["half_width"] == 1.6].assign(**changes)
 
 
+@pytest.mark.slow
 def test_what_a_row_says_of_itself(runs):
     strong = rf.design_table(runs, 0.02, at=50.0)
     assert strong["note"].str.contains("The level lies outside the measures of the runs, ").all()

@@ -344,6 +344,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         assert folder.missing() == [1, 2, 3]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="limits of resources are of POSIX")
 def test_a_limit_on_the_size_of_files_is_met_like_a_full_disk(tmp_path: Path) -> None:
     program = (

@@ -88,6 +88,7 @@ def test_the_lock_of_another_host_stands(tmp_path: Path) -> None:
         locked_folder(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content", ["{", '{"pid": 1, "start": "", "host": "h", "since": "noon"}']
 )  # of earlier versions
@@ -107,6 +108,7 @@ def test_an_empty_lock_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         opened(str(tmp_path), PLAN)
 
 
+@pytest.mark.slow
 def test_of_many_that_find_a_dead_lock_one_gets_it(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(lock_of(dead_pid()))
@@ -137,6 +139,7 @@ def test_what_is_no_lock_is_not_taken_away(tmp_path: Path) -> None:
 LONG_PLAN = ToyPlan(n_chunks=30, delay=0.3)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="there Ctrl-C goes to a whole group of processes")
 @pytest.mark.parametrize("wait", [0.0, 0.2])
 def test_an_interrupted_study_ends_soon(tmp_path: Path, wait: float) -> None:

@@ -165,6 +165,7 @@ def test_structures_are_those_of_the_formulas():
         assert p.recentring_ratio == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_rows_are_single_runs(runs):
     assert len(runs) == study().plan().n_runs == 12 * 5 * 2
     assert runs["error"].isna().all()
@@ -187,6 +188,7 @@ def test_rows_are_single_runs(runs):
     assert runs["number"].tolist() == [number for number in range(12) for _ in range(10)]
 
 
+@pytest.mark.slow
 def test_chunks_change_nothing(runs):
     for per_chunk in (1, 10, 1000):
         assert run_plan(study(runs_per_chunk=per_chunk).plan()).equals(runs)
@@ -207,6 +209,7 @@ def test_records_are_drawn_for_each_structure():
     assert str(caught.value) == ("records_per_structure must be at most the number of records, 5, but 6 was given.")
 
 
+@pytest.mark.slow
 def test_a_stopped_study_is_resumed(tmp_path, runs):
     def stop(now):
         if now.done == 2:

@@ -74,6 +74,7 @@ def test_histories_and_initial_states():
         assert row.response.peaks() == run.peaks()
 
 
+@pytest.mark.slow
 def test_what_a_model_cannot_have_is_said_in_its_row():
     table = rf.simulate_many(FRAMES[0], MOTIONS[1], ["2DOF-S", "MDOF-C", "rigid", "2DOF-C"], bouc_wen=rf.BoucWen(0.05))
     assert table["error"].isna().tolist() == [True, False, False, True]

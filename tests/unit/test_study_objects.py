@@ -39,6 +39,7 @@ def interrupted(done, _total):
         raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("searched", [False, True])
 def test_a_function_of_designs_resumes_its_folder(searched, tmp_path):
     held, factors = rf.Restrained(rf.Frame(**FRAME), rf.Tendon(1e5, 1e6)), {"scales": [0.5, 1.0, 2.0, 4.0]}
@@ -78,6 +79,7 @@ def test_a_function_of_designs_resumes_its_folder(searched, tmp_path):
             list(KINDS["design"].figures(kept.spec, whole, "pgv", print))
 
 
+@pytest.mark.slow
 @every_kind
 def test_a_study_that_was_stopped_is_resumed(kind, tmp_path):
     whole, folder = rf.run_study(made(kind)), tmp_path / "study"
@@ -98,6 +100,7 @@ def test_a_study_that_was_stopped_is_resumed(kind, tmp_path):
     assert json.loads((folder / "spec.json").read_text())["study"] == made(kind).kind
 
 
+@pytest.mark.slow
 def test_rows_are_those_of_the_function_with_the_same_arguments():
     structures = {"A": YIELDS, "tower": Tower(0.5), "properties": HELD.rocking()}
     laws = {"impact": rf.Restitution(0.4), "ground": own_ground}
@@ -123,6 +126,7 @@ def test_bouc_wen_and_a_hazard_curve_may_be_objects():
     assert rf.DesignStudy(structures=frame, records=SUITE, half_widths=[1.0], hazard=hazard).document()["hazard"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("more", "differs"),
     [
@@ -227,6 +231,7 @@ CALLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CALLS)
 def test_a_call_with_a_folder_stores_what_it_returns(kind, tmp_path):
     whole, told = CALLS[kind](), []

@@ -52,6 +52,7 @@ CALLS = {
 each_call = pytest.mark.parametrize("name", CALLS)
 
 
+@pytest.mark.slow
 @each_call
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_function_is_told_from_nothing_to_everything(name, workers):

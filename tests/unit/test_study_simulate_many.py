@@ -106,6 +106,7 @@ def test_names_that_occur_twice_stay_apart_as_rows():
     assert same["max_rotation"][0] == same["max_rotation"][1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("output", ["peaks", "history"])
 def test_threads_change_nothing(output):
     """Runs enough for several tasks; every bit is that of one thread."""
@@ -161,6 +162,7 @@ def test_options_reach_every_run():
     assert table["n_impacts"][3] == expected.n_impacts > 0
 
 
+@pytest.mark.slow
 def test_memory_grows_with_the_table_alone():
     """Twenty times the runs, and what is held at once grows by the bytes of their rows only."""
     motion = rf.GroundMotion(np.tile(RECORD, 4), 0.02, name="long")
@@ -328,6 +330,7 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in (folder / "parts").iterdir()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_the_same_parts_whatever_the_number_of_workers(name, tmp_path):
     study = STUDIES[name]

@@ -57,6 +57,7 @@ def failing(read, tmp_path):
     return message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "kind", "runs"),
     [

@@ -46,6 +46,7 @@ def assert_same(one, two, rtol):
     np.testing.assert_allclose(one.impact_times, two.impact_times, atol=1e3 * rtol)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_modes", [1, 3, 4])
 def test_integration_against_exponentials(n_modes):
     fine, ode = both(n_modes, shaking())
@@ -53,6 +54,7 @@ def test_integration_against_exponentials(n_modes):
     assert_same(ode, fine, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_number_of_sub_samples_does_not_matter():
     # White noise sampled at a sixth of the period: some rocking phases are shorter than a sample.
     record, stiff = 0.9 * np.random.default_rng(4).standard_normal(60), {"period": 0.3, "stiffness_ratio": np.inf}

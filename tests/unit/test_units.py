@@ -108,6 +108,7 @@ def units_of(text):
     return set(re.findall(r"\[([^\]]+)\]<", text)) | set(re.findall(r'<dd class="unit">([^<]+)<', text))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", RESULTS)
 def test_values_of_reports_are_the_same_in_every_system(kind, tmp_path):
     responses, options = RESULTS[kind](), {"appendix": True} if kind == "run" else {}
@@ -144,6 +145,7 @@ def test_unknown_units_and_signs_are_refused(tmp_path, option, value):
     assert not (tmp_path / "r.html").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "heads"),
     [

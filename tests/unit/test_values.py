@@ -236,6 +236,7 @@ def test_equal_values_are_one_key(make):
     assert len({make(), make(), pickle.loads(pickle.dumps(make()))}) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", (VALUES | STUDIES).values())
 @pytest.mark.parametrize("clone", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
 def test_a_copy_is_the_same(make, clone):
@@ -256,6 +257,7 @@ def test_every_field_counts(make):
         assert other != value, field.name
 
 
+@pytest.mark.slow
 @cases
 @pytest.mark.parametrize("clone", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
 def test_arrays_stay_read_only(make, clone):

@@ -185,6 +185,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["MDOF-S", "fixed"])
 @pytest.mark.parametrize("name", CASES)
 def test_the_motion_is_that_of_an_integration_in_the_displacements_of_the_floors(name, model):

@@ -86,6 +86,7 @@ def border(structure, initial_force, yields):
     return rf.Restrained(structure, [rf.Tendon(initial_force, 8e6, 0.0, *((limit, 0.02) if yields else ())), *fuses])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [2, 5])
 @pytest.mark.parametrize(
     "motion", [QUIET, SUITE["FF-1-a"], SUITE["FF-5-a"].scaled(2.0)], ids=["quiet", "weak", "strong"]

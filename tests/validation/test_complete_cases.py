@@ -65,6 +65,7 @@ def test_reference_peaks(case):
         assert -5e-10 * case[name] <= excess <= 2e-7 * case[name], name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_modes", [1, 3])
 def test_twin_without_the_complete_terms_is_the_exact_one(n_modes):
     given = structure(n_modes)
@@ -126,6 +127,7 @@ SHORT = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHORT)
 def test_against_the_twin(name):
     modes, mine, model, options = SHORT[name]
@@ -154,6 +156,7 @@ def test_against_the_twin(name):
         np.testing.assert_allclose(actual[-1] / scale, last[columns] / scale, atol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "n_modes"),
     [
@@ -200,6 +203,7 @@ def test_energy_changes_at_impacts_alone_and_by_what_the_law_says(law, n_modes, 
     assert min(losses) > 0.0
 
 
+@pytest.mark.slow
 def test_with_all_modes_both_impact_laws_are_one():
     run = {**structure(), "acceleration": shaking(), "dt": 0.02}
     one, two = (simulate_complete(**run, law=law) for law in LAWS.values())

@@ -28,6 +28,7 @@ def damped(forces, places, structure=FRAME):
     return rf.Restrained(structure, [rf.FrictionDamper(f * WEIGHT, x * B) for f, x in zip(forces, places, strict=True)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_against_the_twin(name):
     model, modes, forces, places, vertical = CASES[name]

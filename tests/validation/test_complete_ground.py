@@ -77,6 +77,7 @@ SLIDING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SLIDING)
 def test_a_base_that_slides(name):
     model, friction, options = SLIDING[name]
@@ -103,6 +104,7 @@ ON_SPRINGS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ON_SPRINGS)
 def test_a_base_on_springs(name):
     model, ground, options = ON_SPRINGS[name]
@@ -114,6 +116,7 @@ def test_a_base_on_springs(name):
         assert (run.energy.elements[-1, 1:] > 0.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", GROUNDS)
 def test_reactions_are_those_of_newton(ground):
     """At every state that lies within a phase: what the twin's constraints and springs carry."""

@@ -51,6 +51,7 @@ def element_of(given):
     return Bar(given.stiffness, force, ratio, given.position, given.initial_force / given.stiffness, yields)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_controlled_rocking_meets_its_twin(name):
     elements, eccentricity, n, branches = CASES[name]

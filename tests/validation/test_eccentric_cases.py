@@ -64,6 +64,7 @@ def twin_block(eccentricity, rotation, law):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eccentricity", [0.4, -0.7, 0.0])
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("share", [0.1, 0.6, 0.999])

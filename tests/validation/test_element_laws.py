@@ -110,6 +110,7 @@ def twin_element(given):
     return Pieces(1.0, 1.0, 0.0, given.position, ends=points[0], forces=points[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_elements_meet_their_twin(name):
     elements, eccentricity, n = CASES[name]
@@ -145,6 +146,7 @@ GROUNDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", GROUNDS)
 @pytest.mark.parametrize("elements", [FLAGS, DEEP, GAPS, SOFTENING], ids=["flags", "deep", "gaps", "softening"])
 def test_energy_closes(elements, ground):

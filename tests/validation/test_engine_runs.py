@@ -90,6 +90,7 @@ def test_a_rigid_block_in_forty_digits():
     assert found.max_rotation == pytest.approx(peak, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shaken", [False, True])
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("kind", LINEAR)

@@ -45,6 +45,7 @@ def vanishes(expression, turn):
     return sp.expand(sp.expand(expression).subs(sp.cos(turn) ** 2, 1 - sp.sin(turn) ** 2)) == 0
 
 
+@pytest.mark.slow
 @COUNTS
 @BOTH
 def test_lagrange_gives_equations_11_and_12(count, side):
@@ -165,6 +166,7 @@ def test_base_accelerates_upward_where_equation_16_holds(count, side):
     assert 10 < sum(met) < 90
 
 
+@pytest.mark.slow
 @COUNTS
 def test_all_modes_together_have_the_inertia_of_the_masses(count):
     """Σ m*_n h*_n² = Σ m_i h_i² as quadratic forms in the heights, for any masses and whatever modes fit them."""

@@ -77,6 +77,7 @@ def test_logistic_fits_of_small_samples_that_are_often_separated():
     assert (share > 0.85).all()
 
 
+@pytest.mark.slow
 def test_stripes():
     rng, covered, found = np.random.default_rng(4), [], []
     levels, total, refused = np.array([0.1, 0.2, 0.3, 0.5, 0.8]), 25, 0
@@ -93,6 +94,7 @@ def test_stripes():
     np.testing.assert_allclose(report("stripes", covered), 0.9, atol=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("highest", [math.inf, 0.5])
 def test_capacities(highest):
     rng, covered, found = np.random.default_rng(5), [], []
@@ -107,6 +109,7 @@ def test_capacities(highest):
     np.testing.assert_allclose(share, 0.9, atol=0.09)
 
 
+@pytest.mark.slow
 def test_bootstrap_of_runs_that_share_records():
     """Four runs a record with most of the scatter in common: blind to it, a band is far too narrow."""
     rng, blocks, blind, n = np.random.default_rng(6), [], [], 80

@@ -55,6 +55,7 @@ def phases(track):
     return {key[:2] for _, before, _, after in track.events for key in (before, after)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-S", "3DOF-S", "MDOF-S"])
 @pytest.mark.parametrize("friction", [0.1, 0.165, 0.22])
 def test_frames(model, friction):
@@ -107,6 +108,7 @@ def test_a_ground_that_falls_away():
     assert any(not key[2] for _, key, *_ in twin.events)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_random_frames(seed):
     chance = np.random.default_rng(400 + seed)

@@ -57,6 +57,7 @@ def two(stiffness, damping, arm=B, inertia=6e4, **more):
     return rf.Ground(springs=rf.Springs([-arm, arm], stiffness, damping), base_inertia=inertia, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-S", "3DOF-S", "MDOF-S"])
 @pytest.mark.parametrize(("stiffness", "damping"), [(2e8, 5e6), (6e7, 0.0), (9e8, 2e6)])
 def test_two_springs(model, stiffness, damping):
@@ -120,6 +121,7 @@ def test_vertical_shaking(friction):
     compared(FRAME, "MDOF-S", ground, shaking(11, 4.0), shaking(12, 5.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_random_bases(seed):
     """Any structure, number of springs, settlement of 1 to 20 mm and damping ratio up to 0.7."""

@@ -31,6 +31,7 @@ def compared(structure, model, a, vertical, *, rel=1e-8, **more):
     return run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-S", "3DOF-S", "MDOF-S"])
 @pytest.mark.parametrize("structure", [FRAME, SLENDER], ids=["frame", "slender"])
 def test_frames(structure, model):

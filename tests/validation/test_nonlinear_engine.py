@@ -21,6 +21,7 @@ from rockflex.models import _nonlinear_system as systems
 from rockflex.models._vector_fields import field_numbers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
     run = nonlinear_run(seed)

@@ -40,6 +40,7 @@ def difference(mine, other):
     return theta, abs(mine.uplift - other.uplift)
 
 
+@pytest.mark.slow
 @both
 def test_mdof_c_is_newton_s_law_for_its_kinematics(prototype):
     # Cartesian positions of each mass, no modes, an event where the base would turn upwards. Its steps, a thousand or
@@ -52,6 +53,7 @@ def test_mdof_c_is_newton_s_law_for_its_kinematics(prototype):
     assert uplift < 1e-7
 
 
+@pytest.mark.slow
 def test_mdof_s_is_the_plain_integration_without_damping():
     theta, uplift = difference(reference(SHEAR.structure(), "MDOF-S", pulse()), absolute_damping(SHEAR, pulse(), 0.0))
     assert theta < 1e-6

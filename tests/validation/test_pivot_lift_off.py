@@ -49,6 +49,7 @@ def by_equation_22(run):
     return least
 
 
+@pytest.mark.slow
 def test_counts_of_table_1(standing):
     assert len(RECORDS) == 24
     fourth = standing[(standing.structure == 3) & (standing.scale == 2.0)]
@@ -67,6 +68,7 @@ def counted(table):
     return {key: len(rows) for key, rows in table.groupby(["structure", "scale"])}
 
 
+@pytest.mark.slow
 def test_the_friction_that_is_needed_says_the_same(standing):
     for run in standing.response.iloc[::9]:
         assert math.isinf(run.required_friction) == (run.min_vertical_reaction <= 0.0)

@@ -29,6 +29,7 @@ def combination(found):
     return found.combination.set_index(["quantity", "estimate"])
 
 
+@pytest.mark.slow
 def test_top_displacement_agrees_while_rocking(agreement):
     row = agreement.loc[("rocking", "top_displacement", "all")]
     assert row["r2"] == pytest.approx(0.983, abs=0.01)

@@ -157,6 +157,7 @@ def thresholds(form, frequencies):
     return [brentq(form, 1.0, 100.0, args=(each,), xtol=1e-13) for each in frequencies]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "ratios"), [(half_sine, [2.0, 5.0, 10.0]), (full_sine, [2.0, 3.0, 5.0])])
 def test_an_overturning_spectrum_without_impact_is_the_closed_form(form, ratios):
     table = rf.overturning_spectrum(BLOCK, PULSES[form], ratios, impact=STICKS, tolerance=1e-8)
@@ -172,6 +173,7 @@ def test_with_housners_impact_the_upper_boundary_is_the_one_without_impact():
     assert (table["lowest"] < 0.5 * table["highest_standing"]).all()
 
 
+@pytest.mark.slow
 def test_a_half_sine_overturns_without_impact_whatever_the_impact():
     stuck, rocking = (
         rf.overturning_spectrum(BLOCK, PULSES[half_sine], [2.0, 5.0], impact=law) for law in (STICKS, None)

@@ -121,11 +121,13 @@ def line(said: dict[str, bytes]) -> str:
     return hashlib.sha256(b"".join(said[name] for name in sorted(said))).hexdigest()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_a_run_is_the_same_however_it_is_run(name):
     assert not any(ways(run_of(name)).values())
 
 
+@pytest.mark.slow
 def test_runs_are_the_same_on_two_threads_and_in_another_process():
     runs = [run_of(name) for name in CASES]
     alone = [told(run) for run in runs]

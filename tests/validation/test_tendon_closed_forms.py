@@ -74,6 +74,7 @@ def test_a_stiff_tendon_reaches_the_fixed_base(model):
     assert gaps[-1] < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [0.0, 0.5, 1.0, 1.001, 1.011, 0.989, 3.0, 100.0])
 @pytest.mark.parametrize("model", MODELS)
 def test_energy_closes(model, stiffness):

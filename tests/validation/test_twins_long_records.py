@@ -38,6 +38,7 @@ def setting(case):
     return {**frame, **changes}, GroundMotion(shaking, records[0].dt)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_nothing_is_lost(case):
     given, record = setting(case)

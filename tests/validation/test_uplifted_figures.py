@@ -33,6 +33,7 @@ def building(behaviour, n_stories=15, period=1.0):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("behaviour", BEHAVIOURS)
 def test_figure_10_at_the_gray_line_and_at_both_ends(behaviour):
     table = rf.frequency_ratios(building(behaviour), np.geomspace(0.01, 1e4, 61))

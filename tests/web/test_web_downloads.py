@@ -46,6 +46,7 @@ def test_the_report_has_the_numbers_of_the_tab(client) -> None:
     assert "not computed" not in text
 
 
+@pytest.mark.slow
 def test_names_of_visitors_are_text(client) -> None:
     structure = PRESETS[0]["structure"] | {"name": "<img src=x onerror=alert(1)>"}
     text = client.download("/api/file/report", client.state(structure=structure))[1].decode()
@@ -53,6 +54,7 @@ def test_names_of_visitors_are_text(client) -> None:
     assert "<img" not in text
 
 
+@pytest.mark.slow
 def test_what_takes_long_is_left_out_and_said(client, monkeypatch) -> None:
     on_springs = client.state(models=["2DOF-S"], ground=BED)
     text = client.download("/api/file/report", on_springs)[1].decode()
@@ -75,6 +77,7 @@ def test_the_structure_tab_has_the_warnings(client) -> None:
     assert "The tip has a mass of 60 kg, less than a tenth of the 48000 kg" in warning
 
 
+@pytest.mark.slow
 @pytest.mark.web
 def test_a_warning_is_seen(visit, link) -> None:
     visitor = visit(link({"structure": TONNES}))
@@ -82,6 +85,7 @@ def test_a_warning_is_seen(visit, link) -> None:
     assert "Masses are in kg: a tonne is 1000 kg." in visitor.page.locator("#warnings").inner_text()
 
 
+@pytest.mark.slow
 @pytest.mark.web
 @pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
 def test_a_tab_on_paper(visit, link, client, tab) -> None:
@@ -141,6 +145,7 @@ def test_a_tab_on_paper(visit, link, client, tab) -> None:
 SHORT = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 4.0, "period": 0.8}}
 
 
+@pytest.mark.slow
 def test_the_gif_is_that_of_the_library(client, frame, tmp_path) -> None:
     state = client.state(record=SHORT, models=["MDOF-S", "fixed"], scale=1.5, free_vibration=1.0)
     made = client.made("animation", state)
@@ -160,6 +165,7 @@ def test_the_gif_is_that_of_the_library(client, frame, tmp_path) -> None:
             assert image.convert("RGB").tobytes() == other.convert("RGB").tobytes()
 
 
+@pytest.mark.slow
 def test_a_long_one_has_fewer_frames_and_a_longer_one_is_refused(client, monkeypatch) -> None:
     state = client.state(record=SHORT, models=["fixed"], free_vibration=1.0)
 
@@ -188,6 +194,7 @@ def test_it_ends_when_nobody_waits(client, monkeypatch) -> None:
     assert job.file is None
 
 
+@pytest.mark.slow
 def test_it_can_be_cancelled_and_says_how_far_it_is(client) -> None:
     token = client.make("animation", client.state(**LONG))
     path, seen = f"/api/file/{token}", []
@@ -211,6 +218,7 @@ def test_an_unknown_file_is_refused(client) -> None:
     assert client.request("/api/file/none")[0] == 404
 
 
+@pytest.mark.slow
 def test_the_page_answers_while_it_draws(client) -> None:
     state = client.state(record=SHORT, models=["MDOF-S", "2DOF-S", "fixed"], free_vibration=10.0)
     done: list[float] = []
@@ -229,6 +237,7 @@ def test_the_page_answers_while_it_draws(client) -> None:
     assert answered < done[0]
 
 
+@pytest.mark.slow
 @pytest.mark.web
 def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) -> None:
     visitor = visit(link(client.state(record=SHORT)))
@@ -252,6 +261,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
     assert not visitor.said
 
 
+@pytest.mark.slow
 @pytest.mark.web
 def test_an_animation_can_be_cancelled_on_the_page(visit, link, client) -> None:
     visitor = visit(link(client.state(**LONG)))
@@ -265,6 +275,7 @@ def test_an_animation_can_be_cancelled_on_the_page(visit, link, client) -> None:
     assert saved == []
 
 
+@pytest.mark.slow
 @pytest.mark.web
 def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch) -> None:
     monkeypatch.setattr(_downloads, "FRAME_RATES", ((1.0, 25.0),))
@@ -273,6 +284,7 @@ def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch)
     visitor.wait_for_error("free_vibration", "The animation would last ")
 
 
+@pytest.mark.slow
 def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
     status, headers, body = client.request("/languages/de.json")
     assert (status, headers["content-type"]) == (200, "application/json")
@@ -289,6 +301,7 @@ def test_answers_and_files_are_in_the_language_of_the_page(client) -> None:
     assert list(client.refused("/api/state", state | {"language": "la"})) == ["language"]
 
 
+@pytest.mark.slow
 @pytest.mark.web
 def test_reports_are_printed(client, monkeypatch) -> None:
     if not json.loads(client.request("/api/about")[2])["pdf"]:

@@ -27,6 +27,7 @@ def keep_and_widen(visitor) -> None:
     wait_for_heads(visitor.page, ["A", "B", "B to A [%]"])
 
 
+@pytest.mark.slow
 def test_kept_ones_are_compared_named_edited_and_removed(visitor, visit, el_centro) -> None:
     page = visitor.page
     assert not page.locator("#differences").is_visible()
@@ -64,6 +65,7 @@ def test_kept_ones_are_compared_named_edited_and_removed(visitor, visit, el_cent
     assert (page.evaluate(NAMES), page.evaluate(GHOSTS)) == (["narrow"], [])
 
 
+@pytest.mark.slow
 def test_charts_and_drawing_of_the_response_have_them(visitor, el_centro) -> None:
     keep_and_widen(visitor)
     page = visitor.respond()
@@ -81,6 +83,7 @@ def test_charts_and_drawing_of_the_response_have_them(visitor, el_centro) -> Non
     assert "B to A" in got.value.path().read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_edit_again_changes_the_models_of_another_kind(visitor) -> None:
     keep_and_widen(visitor)
     page = visitor.page
@@ -127,6 +130,7 @@ def test_a_project_is_saved_and_opened(visitor, visit, tmp_path) -> None:
     assert other.state()["limits"]["friction"] == 0.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing(visit, link, client, scheme) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="no axe: install rockflex[dev]").Axe()

@@ -22,6 +22,7 @@ def held(visitor) -> list[dict]:
     return visitor.state()["structure"].get("elements", [])
 
 
+@pytest.mark.slow
 def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     page = visitor.page
     bare = visitor.value("[data-task=modes] dd[data-value] >> nth=2")
@@ -78,6 +79,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, link) -> None:
     page = visitor.page
     page.get_by_role("button", name="Add an element").click()
@@ -105,6 +107,7 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
     assert rows.first.get_attribute("open") is not None
 
 
+@pytest.mark.slow
 def test_a_new_device_stands_beside_those_of_other_kinds(visitor) -> None:
     for kind in ("yielding_dissipator", "viscous_damper", "viscous_damper"):
         visitor.page.get_by_label("Element to add").select_option(kind)
@@ -114,6 +117,7 @@ def test_a_new_device_stands_beside_those_of_other_kinds(visitor) -> None:
     assert twin == -damper
 
 
+@pytest.mark.slow
 def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, pier_run) -> None:
     run = pier_run
     visitor = visit(link({"structure": PIER, "scale": 2.0, "models": ["MDOF-S", "2DOF-S", "fixed"], "tab": "response"}))
@@ -163,6 +167,7 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, pier_run) -> 
     assert page.get_by_label("Model for the elements").input_value() == "MDOF-S"
 
 
+@pytest.mark.slow
 def test_without_elements_and_ground_nothing_of_them_is_shown(visitor) -> None:
     page = visitor.respond()
     assert page.locator("#elements").is_hidden()
@@ -203,6 +208,7 @@ def test_elements_are_drawn_where_they_are(visit, link) -> None:
     assert np.abs(seen) == pytest.approx(1.3, abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
     old = as_json_value(PRESETS[0]["structure"])
     tendons = [{"position": 0.0, "initial_force": 5e5, "stiffness": 2e7, "yield_force": 9e5}]
@@ -242,6 +248,7 @@ def shown(visit, link, ground: dict, models: list[str]):
     return visitor
 
 
+@pytest.mark.slow
 def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(visitor) -> None:
     page = visitor.page
     ground, p = page.get_by_label("Ground", exact=True), make_frame().rocking()
@@ -291,6 +298,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
     assert "ground" not in visitor.state()
 
 
+@pytest.mark.slow
 def test_an_impact_law_is_not_kept_on_springs_and_a_message_elsewhere_names_the_field(visitor) -> None:
     page = visitor.respond()
     page.get_by_label("Impact law").select_option("complete")
@@ -305,6 +313,7 @@ def test_an_impact_law_is_not_kept_on_springs_and_a_message_elsewhere_names_the_
     assert foot.inner_text().startswith("Structure, breadth: ")
 
 
+@pytest.mark.slow
 def test_a_base_slides_and_hops_in_step_with_its_charts(visit, link) -> None:
     models = ["MDOF-S", "2DOF-S"]
     visitor = shown(visit, link, SOFT, models)
@@ -343,6 +352,7 @@ def test_a_base_slides_and_hops_in_step_with_its_charts(visit, link) -> None:
     assert {"compressed ground", "damped by the ground", "friction of the base"} <= set(keys.split("\n"))
 
 
+@pytest.mark.slow
 def test_the_energies_of_a_base_on_springs_add_up_to_the_input(visit, link) -> None:
     visitor = shown(visit, link, SOFT, ["2DOF-S"])
     series = visitor.page.evaluate(
@@ -360,6 +370,7 @@ def test_the_energies_of_a_base_on_springs_add_up_to_the_input(visit, link) -> N
     assert min(parts[name].max() for name in ("soil", "soil_strain", "friction")) > 0.0
 
 
+@pytest.mark.slow
 def test_springs_that_lift_are_drawn_unloaded_and_a_mark_stays_where_the_base_stood(visit, link) -> None:
     visitor = shown(visit, link, SOFT, ["MDOF-S"])
     found = visitor.page.evaluate(
@@ -414,6 +425,7 @@ def samples(name: str, amplitude: float, dt: float = 0.02) -> bytes:
     return f"time (s),{name} (m/s2)\n{rows}".encode()
 
 
+@pytest.mark.slow
 def test_a_vertical_component_is_uploaded_beside_the_record(visitor, frame) -> None:
     page = visitor.page
     visitor.tab("earthquake")

@@ -37,6 +37,7 @@ def values(visitor) -> dict:
     return visitor.state()["structure"]["cantilever"]
 
 
+@pytest.mark.slow
 def test_the_page_begins_with_a_pier_that_moves(visit) -> None:
     visitor = visit(reduced_motion="no-preference")
     page = visitor.page
@@ -54,6 +55,7 @@ def test_the_page_begins_with_a_pier_that_moves(visit) -> None:
     page.wait_for_function(f"() => {TIME} < 5")  # it begins again at the end
 
 
+@pytest.mark.slow
 def test_it_stands_still_for_those_who_want_that(visit) -> None:
     page = visit(reduced_motion="reduce").page
     page.wait_for_function("() => globalThis.rockflexDrawn?.view()")
@@ -63,6 +65,7 @@ def test_it_stands_still_for_those_who_want_that(visit) -> None:
     assert page.evaluate(TIME) == time
 
 
+@pytest.mark.slow
 def test_a_drag_draws_only_what_answers_bring(visit) -> None:
     page = visit(reduced_motion="no-preference").page
     page.wait_for_function("() => globalThis.rockflexDrawn?.player.playing")
@@ -79,6 +82,7 @@ def test_a_drag_draws_only_what_answers_bring(visit) -> None:
     page.wait_for_function(f"t => {TIME} !== t", arg=time)
 
 
+@pytest.mark.slow
 def test_width_and_height_are_dragged(visit) -> None:
     visitor = visit()
     handle(visitor, "B").wait_for()
@@ -100,6 +104,7 @@ def test_width_and_height_are_dragged(visit) -> None:
     assert other.state()["structure"] == visitor.state()["structure"]
 
 
+@pytest.mark.slow
 def test_handles_by_the_keyboard(visit, link) -> None:
     visitor = visit(link({"structure": as_json_value(FUSES), "scale": 2.0}))
     page = visitor.page
@@ -131,6 +136,7 @@ def test_handles_by_the_keyboard(visit, link) -> None:
     assert values(visitor)["half_width"] == edge
 
 
+@pytest.mark.slow
 def test_springs_are_dragged_in_pairs(visit, link) -> None:
     ground = {"mat_mass": 2e5, "springs": {"stiffness": 2e9, "heave_damping_ratio": 0.3}}
     visitor = visit(link({"structure": as_json_value(PIER), "ground": ground, "models": ["MDOF-S"]}))
@@ -142,6 +148,7 @@ def test_springs_are_dragged_in_pairs(visit, link) -> None:
     assert visitor.page.locator('[data-path="ground.springs.positions"] input').input_value() == f"{left:g}, {right:g}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [1280, 420])
 def test_handles_cover_no_words(visit, link, width) -> None:
     ground = {"mat_mass": 2e5, "springs": {"stiffness": 5e8, "heave_damping_ratio": 0.3}}
@@ -167,6 +174,7 @@ def test_handles_cover_no_words(visit, link, width) -> None:
             assert x + wide / 2 < left or x - wide / 2 > right or y < top or y - 10 > bottom
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [1280, 420])
 def test_handles_of_devices_and_springs_lie_beside_each_other(visit, link, width) -> None:
     """Two devices at one place and a tall building, whose base is narrower than a finger."""
@@ -190,6 +198,7 @@ def test_handles_of_devices_and_springs_lie_beside_each_other(visit, link, width
     assert [across.index(x) for x in sorted(across)][2] == 0  # the middle one stays in the middle
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", ["structure", "response"])
 def test_on_a_phone_the_drawing_stays_in_sight(visit, link, tab) -> None:
     visitor = visit(link({"structure": as_json_value(PIER), "tab": tab}), viewport={"width": 420, "height": 860})
@@ -200,6 +209,7 @@ def test_on_a_phone_the_drawing_stays_in_sight(visit, link, tab) -> None:
     assert page.locator(".pinned").bounding_box()["y"] == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", range(len(PRESETS)))
 def test_what_is_dragged_alone_changes(client, visit, link, place) -> None:
     """Of every structure that the page has: width and height as wanted, and the others as they were."""
@@ -238,6 +248,7 @@ def test_where_the_height_is_in_no_field_it_has_no_handle(visit, link) -> None:
     assert visitor.page.locator('[data-path="few.T"]').is_visible()
 
 
+@pytest.mark.slow
 def test_leaning_masses_and_stories_that_yield(visitor) -> None:
     visitor.fill("structure.leaning_masses", "1e4")
     visitor.wait_for_results()
@@ -258,6 +269,7 @@ def test_leaning_masses_and_stories_that_yield(visitor) -> None:
     assert visitor.page.locator('[data-path="structure.stories"]').count() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
 def test_axe_finds_nothing(visit, link, tab, scheme) -> None:
@@ -271,6 +283,7 @@ def test_axe_finds_nothing(visit, link, tab, scheme) -> None:
     assert [(each["id"], [node["html"][:120] for node in each["nodes"]]) for each in found] == []
 
 
+@pytest.mark.slow
 def test_braces_ties_and_leaning_columns_are_drawn(visit, link) -> None:
     held = [
         {"kind": "yielding_dissipator", "stiffness": 5e7, "yield_force": 1e5, "between": [0, 2], "cosine": 0.8},

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.web
 RECORD = b"time (s),acc (m/s2)\n" + b"".join(b"%.2f,%.4f\n" % (0.02 * i, 3 * math.sin(0.1 * i)) for i in range(400))
 
 
+@pytest.mark.slow
 def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -40,6 +41,7 @@ def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
     visitor.wait_for_error("record.pulse.period", "It must be the period in s, from 0.05 to 20, but 9999 was given.")
 
 
+@pytest.mark.slow
 def test_an_upload_a_bad_one_and_one_that_is_too_large(visitor, frame, link) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -91,6 +93,7 @@ def motion_of(folder: Path, name: str, vertical: str | None = None) -> rf.Ground
     return rf.survey_records(files, vertical=vertical).suite()[name]
 
 
+@pytest.mark.slow
 def test_a_folder_is_reported_and_a_record_of_it_is_simulated(visitor, folder, frame) -> None:
     page = visitor.page
     give(visitor, folder)
@@ -115,6 +118,7 @@ def test_a_folder_is_reported_and_a_record_of_it_is_simulated(visitor, folder, f
     visitor.wait_for_peak("2DOF-S", "max_rotation", run.max_rotation)
 
 
+@pytest.mark.slow
 def test_it_survives_a_reload_and_a_server_without_it_says_so(visitor, folder, link) -> None:
     page = visitor.page
     give(visitor, folder)
@@ -128,6 +132,7 @@ def test_it_survives_a_reload_and_a_server_without_it_says_so(visitor, folder, l
     assert page.locator("#report").is_hidden()
 
 
+@pytest.mark.slow
 def test_files_and_archives_and_what_is_wrong_with_them(visitor, folder) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -159,6 +164,7 @@ def test_files_and_archives_and_what_is_wrong_with_them(visitor, folder) -> None
     assert "[object" not in page.locator("main").inner_text()
 
 
+@pytest.mark.slow
 def test_a_late_answer_about_the_record_leaves_the_message_about_the_files(visit) -> None:
     visitor = visit("/")
     page = visitor.page
@@ -184,6 +190,7 @@ def test_a_late_answer_about_the_record_leaves_the_message_about_the_files(visit
     visitor.wait_for_error("record.folder", "a.zip is a damaged archive")
 
 
+@pytest.mark.slow
 def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) -> None:
     page = visitor.page
     visitor.tab("fragility")
@@ -205,6 +212,7 @@ def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) 
     assert json.loads(json.dumps(visitor.state()))["record"]["folder"]
 
 
+@pytest.mark.slow
 def test_on_paper_the_records_have_names_and_the_sheet_says_which_one(visitor, folder) -> None:
     page = visitor.page
     give(visitor, folder)
@@ -222,6 +230,7 @@ def test_on_paper_the_records_have_names_and_the_sheet_says_which_one(visitor, f
     assert title.inner_text().startswith("Structure #1 of Table 1 under records for a target spectrum · Earthquake · ")
 
 
+@pytest.mark.slow
 def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -253,6 +262,7 @@ def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> N
     assert visitor.state()["record"]["given"] == "alone"
 
 
+@pytest.mark.slow
 def test_a_lost_folder_is_told_on_other_tabs_in_words(visit, link, client) -> None:
     visitor = visit(link(client.state(tab="response", record={"source": "folder"})))
     foot = visitor.page.locator(".foot:visible").filter(has_text="Earthquake")
@@ -274,6 +284,7 @@ def wait_for_fit(visitor, chosen) -> None:
     visitor.wait_for("[data-fact=misfit]", chosen.misfit, 1e-9)
 
 
+@pytest.mark.slow
 def test_records_are_chosen_for_codes_and_tables(visitor) -> None:
     page = visitor.page
     open_target(visitor)
@@ -309,6 +320,7 @@ def test_records_are_chosen_for_codes_and_tables(visitor) -> None:
     assert "[object" not in page.locator("main").inner_text()
 
 
+@pytest.mark.slow
 def test_bad_values_are_answered_beside_their_fields(visitor) -> None:
     page = visitor.page
     open_target(visitor)
@@ -333,6 +345,7 @@ def test_bad_values_are_answered_beside_their_fields(visitor) -> None:
     visitor.wait_for_error("target.file", "large.csv has more than 20000 letters")
 
 
+@pytest.mark.slow
 def test_the_record_is_scaled_and_the_choice_survives_a_reload(visitor, el_centro) -> None:
     page = visitor.page
     open_target(visitor)
@@ -351,6 +364,7 @@ def test_the_record_is_scaled_and_the_choice_survives_a_reload(visitor, el_centr
     visitor.wait_for("[data-measure=PGA]", over.pga, 1e-9)
 
 
+@pytest.mark.slow
 def test_chosen_records_are_used_by_the_studies_and_saved(visitor) -> None:
     page = visitor.page
     open_target(visitor)

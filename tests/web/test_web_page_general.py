@@ -17,6 +17,7 @@ TABS = ("structure", "earthquake", "response", "fragility", "design")
 CONTROLS = "button, input, select, textarea, summary, .chart, .stage .pinned canvas, .handle"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", TABS)
 def test_downloads_of_each_tab(visitor, tab, monkeypatch) -> None:
     monkeypatch.setattr(_downloads, "FRAME_RATES", ((60.0, 2.0),))  # an animation of few frames
@@ -52,6 +53,7 @@ def test_a_link_reopens_the_page(visitor, visit) -> None:
     assert other.state() == visitor.state()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("hash_", "text"),
     [
@@ -74,6 +76,7 @@ def test_a_damaged_link_is_told(visit, link, hash_, text) -> None:
     visitor.page.wait_for_selector("#adequacy")
 
 
+@pytest.mark.slow
 def test_two_visitors_do_not_see_each_other(visit) -> None:
     one, other = visit(), visit()
     one.page.wait_for_selector("#adequacy")
@@ -88,6 +91,7 @@ def test_two_visitors_do_not_see_each_other(visit) -> None:
     assert "Own" not in other.page.locator("main").inner_text()
 
 
+@pytest.mark.slow
 def test_tabs_and_buttons_by_the_keyboard(visitor) -> None:
     page = visitor.page
     page.locator('[data-tab="structure"]').focus()
@@ -111,6 +115,7 @@ def test_tabs_and_buttons_by_the_keyboard(visitor) -> None:
     page.wait_for_function("() => !rockflexStage.playing()")
 
 
+@pytest.mark.slow
 def test_skipping_to_the_content_keeps_the_state(visitor) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -123,6 +128,7 @@ def test_skipping_to_the_content_keeps_the_state(visitor) -> None:
     assert visitor.state()["scale"] == 2.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", TABS)
 def test_every_control_has_a_name_and_is_reached_by_tab(visitor, tab) -> None:
     page = visitor.page
@@ -167,6 +173,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(visitor, tab) -> None:
     assert nameless == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", TABS)
 def test_a_phone_needs_no_sideways_scrolling(visit, tab) -> None:
     visitor = visit(viewport={"width": 390, "height": 844}, has_touch=True)
@@ -184,6 +191,7 @@ def test_a_phone_needs_no_sideways_scrolling(visit, tab) -> None:
     assert small == []
 
 
+@pytest.mark.slow
 def test_dark_and_light(visit) -> None:
     visitor = visit(color_scheme="dark")
     page = visitor.page
@@ -216,6 +224,7 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_texts_and_lines_can_be_told_from_their_ground(visit, scheme) -> None:
     visitor = visit(color_scheme=scheme)
@@ -281,6 +290,7 @@ def point_at(visitor, name: str, share: float) -> float:
     return share
 
 
+@pytest.mark.slow
 def test_every_history_is_read_where_one_is_pointed_at(shown, frame, el_centro) -> None:
     page = shown.page
     assert set(page.evaluate(READOUTS)) == set(ATTRIBUTES)
@@ -304,6 +314,7 @@ def test_every_history_is_read_where_one_is_pointed_at(shown, frame, el_centro) 
     assert not any(page.evaluate(READOUTS).values())
 
 
+@pytest.mark.slow
 def test_a_line_is_drawn_in_each_of_them(shown) -> None:
     page = shown.page
     before = dict(page.evaluate(COLUMNS))
@@ -322,6 +333,7 @@ def test_a_line_is_drawn_in_each_of_them(shown) -> None:
     assert dict(page.evaluate(COLUMNS)) == before
 
 
+@pytest.mark.slow
 def test_the_keys_move_it_everywhere_and_zooming_takes_it_away(shown) -> None:
     page = shown.page
     chart = page.get_by_role("application", name="Rotation over time")
@@ -343,6 +355,7 @@ def test_the_keys_move_it_everywhere_and_zooming_takes_it_away(shown) -> None:
     assert not any(page.evaluate(READOUTS).values())
 
 
+@pytest.mark.slow
 def test_dragging_in_one_chart_does_not_set_the_time_or_zoom_early(shown) -> None:
     page = shown.page
     point_at(shown, "Base moment over time", 0.3)
@@ -357,6 +370,7 @@ def test_dragging_in_one_chart_does_not_set_the_time_or_zoom_early(shown) -> Non
     assert not any(page.evaluate(READOUTS).values())
 
 
+@pytest.mark.slow
 def test_histories_of_the_ground_share_it_as_well(visitor) -> None:
     page = visitor.page
     visitor.tab("earthquake")
@@ -370,6 +384,7 @@ def test_histories_of_the_ground_share_it_as_well(visitor) -> None:
     assert moved == [f"Ground {name} over time" for name in ("acceleration", "velocity", "displacement")]
 
 
+@pytest.mark.slow
 def test_on_a_phone_the_values_stay_within_their_chart(visit, client, link) -> None:
     visitor = visit(link(client.state()), viewport={"width": 390, "height": 844}, has_touch=True)
     visitor.respond(1, MODELS)
@@ -406,6 +421,7 @@ class Held:
             route.continue_()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["springs", "winkler"])
 def test_new_springs_wait_for_the_structure_they_suit(visitor, kind) -> None:
     """Answers that are held back: neither no structure nor the previous one may be taken for the present one."""
@@ -430,6 +446,7 @@ def test_new_springs_wait_for_the_structure_they_suit(visitor, kind) -> None:
         assert ground["bed"]["subgrade_modulus"] == float(f"{stiffness / (2 * p.half_width * breadth):.2g}")
 
 
+@pytest.mark.slow
 def test_the_last_choice_of_a_ground_counts_while_the_structure_is_awaited(visitor) -> None:
     page = visitor.page
     held = Held(page)
@@ -447,6 +464,7 @@ def test_the_last_choice_of_a_ground_counts_while_the_structure_is_awaited(visit
     assert visitor.state()["ground"]["mat_mass"] == 2e4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("linked", [False, True])
 @pytest.mark.parametrize("keys", [False, True])
 def test_a_tab_chosen_before_the_page_knows_its_state_is_shown(visitor, linked, keys) -> None:

@@ -87,6 +87,7 @@ def left_on(visitor, names) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [
@@ -110,6 +111,7 @@ def test_every_text_is_looked_up(marked, names, client, link, changes) -> None:
     assert left_on(marked, names) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tab", ["fragility", "design", "response"])
 def test_every_text_of_a_study_is_looked_up(marked, names, client, link, tab) -> None:
     changes = {"record_set": {"shown": True, "suites": ["fema-p695-near-field-pulse"]}, "limits": {"drift_ratio": 0.01}}
@@ -120,6 +122,7 @@ def test_every_text_of_a_study_is_looked_up(marked, names, client, link, tab) ->
     assert left_on(marked, names) == []
 
 
+@pytest.mark.slow
 def test_every_text_about_records_is_looked_up(marked, names, client, link) -> None:
     page = marked.page
     marked.open("/?lang=de" + link(client.state(tab="earthquake"))[1:])
@@ -137,6 +140,7 @@ def test_every_text_about_records_is_looked_up(marked, names, client, link) -> N
         assert left_on(marked, names) == []
 
 
+@pytest.mark.slow
 def test_the_language_is_chosen_and_kept(marked, client) -> None:
     page = marked.page
     lang = "document.documentElement.lang"
@@ -166,6 +170,7 @@ def test_the_language_is_chosen_and_kept(marked, client) -> None:
     assert page.evaluate(lang) == "en"
 
 
+@pytest.mark.slow
 def test_a_catalogue_that_is_missing_leaves_the_page_in_english(visit) -> None:
     visitor = visit()
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(status=404))

@@ -18,6 +18,7 @@ PEAKS = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
     page = visitor.respond()
     for model in ("MDOF-S", "2DOF-S", "fixed"):
@@ -52,6 +53,7 @@ def chosen(number: int, **more) -> dict:
     return {"structure": structure, **more}
 
 
+@pytest.mark.slow
 def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
     """Relative to a base that turns, the deck moves a quarter of what it does; that is no reduction of anything."""
     visitor = visit(link(chosen(7, scale=3.0)))
@@ -79,6 +81,7 @@ def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
     assert visitor.page.evaluate(drawn) == pytest.approx(response.max_top_displacement, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
     record = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-1-a"}
     visitor = visit(link(chosen(3, scale=2.0, record=record, models=["MDOF-S", "2DOF-S", "2DOF-S-R"])))
@@ -97,6 +100,7 @@ def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
     assert visitor.page.locator("#warnings").is_hidden()
 
 
+@pytest.mark.slow
 def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) -> None:
     p = make_frame().rocking()
     names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
@@ -144,6 +148,7 @@ def test_play_pause_scrub_and_speed(visitor, frame, el_centro) -> None:
     assert page.evaluate("rockflexStage.stage.amplification") == 200
 
 
+@pytest.mark.slow
 def test_a_slider_redraws(visitor) -> None:
     page = visitor.respond()
     slider = page.get_by_role("slider", name="Scale factor")
@@ -157,6 +162,7 @@ def test_a_slider_redraws(visitor) -> None:
     print(f"a change of the scale is drawn after {page.locator('[data-redrawn]').get_attribute('data-redrawn')} ms")
 
 
+@pytest.mark.slow
 def test_models_and_overturning(visitor) -> None:
     page = visitor.page
     visitor.tab("response")
@@ -178,6 +184,7 @@ def test_models_and_overturning(visitor) -> None:
     visitor.wait_for_error("models", "needs 76 modes, but the structure has 5")
 
 
+@pytest.mark.slow
 def test_impact_laws(visitor, frame, el_centro) -> None:
     page = visitor.respond()
     law, share = page.get_by_label("Impact law"), page.locator('[data-path="restitution"]')
@@ -211,6 +218,7 @@ def test_impact_laws(visitor, frame, el_centro) -> None:
     assert share.is_hidden()
 
 
+@pytest.mark.slow
 def test_a_superstructure_that_yields(visitor, visit, frame, el_centro) -> None:
     page = visitor.respond()
     tick, offered = page.get_by_label("The superstructure yields"), page.locator('[data-label$="-BW"]')
@@ -253,6 +261,7 @@ def test_a_superstructure_that_yields(visitor, visit, frame, el_centro) -> None:
     assert offered.count() == 0
 
 
+@pytest.mark.slow
 def test_yielding_takes_its_share_of_the_energy(visitor) -> None:
     page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
@@ -262,6 +271,7 @@ def test_yielding_takes_its_share_of_the_energy(visitor) -> None:
     assert "yielding" in page.locator(".pair .legend").inner_text()
 
 
+@pytest.mark.slow
 def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
     page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
@@ -280,6 +290,7 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
     assert page.locator('[data-label$="-BW"]').count() == 0
 
 
+@pytest.mark.slow
 def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
     structure = as_json_value(PRESETS[0]["structure"]) | {"eccentricity": 0.3}
     visitor = visit(link({"structure": structure, "tab": "response", "models": ["2DOF-S"]}))
@@ -299,6 +310,7 @@ def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
     assert turned[2] == pytest.approx([left, right])
 
 
+@pytest.mark.slow
 def test_stage_and_charts_by_the_keyboard(visitor, frame, el_centro) -> None:
     page = visitor.respond()
     time = "rockflexStage.time()"
@@ -339,6 +351,7 @@ def test_stage_and_charts_by_the_keyboard(visitor, frame, el_centro) -> None:
     assert page.evaluate(zoom) is None
 
 
+@pytest.mark.slow
 def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
     page = visitor.respond()
     box = page.get_by_role("application", name="Base moment over time").bounding_box()
@@ -357,6 +370,7 @@ def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
     assert page.evaluate("rockflexStage.panel.zoom") is None
 
 
+@pytest.mark.slow
 def test_a_long_wait_is_explained(visitor) -> None:
     page, held = visitor.page, []
     page.route("**/api/response", lambda route: held.append(route))

@@ -43,6 +43,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
         assert page.locator(".error:visible").all_inner_texts() == []
 
 
+@pytest.mark.slow
 def test_an_eccentric_base_has_two_edges(visitor) -> None:
     page = visitor.page
     visitor.fill("structure.eccentricity", "0.25")
@@ -61,6 +62,7 @@ def test_an_eccentric_base_has_two_edges(visitor) -> None:
     assert "eccentricity" not in visitor.state()["structure"]
 
 
+@pytest.mark.slow
 def test_matrices_are_imported(visitor, tmp_path) -> None:
     page = visitor.page
     k = np.array([[2e7, -1e7], [-1e7, 1e7]])
@@ -73,6 +75,7 @@ def test_matrices_are_imported(visitor, tmp_path) -> None:
     visitor.wait_for_error("import", "does not hold matrices that can be read")
 
 
+@pytest.mark.slow
 def test_matrices_with_rotations_are_imported_and_edited(visitor, tmp_path) -> None:
     page = visitor.page
     k = np.array([[8e6, -4e6, 0.0], [-4e6, 4e6, -2e6], [0.0, -2e6, 9e6]])
@@ -97,6 +100,7 @@ def test_matrices_with_rotations_are_imported_and_edited(visitor, tmp_path) -> N
     assert page.locator(".error:visible").count() == 1
 
 
+@pytest.mark.slow
 def test_decimal_commas_are_read_in_every_number_field(visitor) -> None:
     page = visitor.page
     kinds = page.evaluate("Object.entries(rockflexPage.about.kinds).map(([name, k]) => [name, k.fields])")
@@ -111,6 +115,7 @@ def test_decimal_commas_are_read_in_every_number_field(visitor) -> None:
                 assert box.input_value() == "0.5"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "field", "text", "value"),
     [
@@ -149,6 +154,7 @@ def test_what_commas_mean(visitor, kind, field, text, value) -> None:
         visitor.wait_for_error(f"structure.{kind}.{field}", "write a decimal point, no thousands separators")
 
 
+@pytest.mark.slow
 def test_decimal_commas_on_the_other_tabs(visitor) -> None:
     page = visitor.page
     visitor.tab("response")
@@ -168,6 +174,7 @@ def test_decimal_commas_on_the_other_tabs(visitor) -> None:
     assert visitor.state()["design"]["at"] == 0.7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("preset", "kind"), [(0, "frame"), (6, "tapered_tower"), (8, "cantilever"), (10, "lumped")])
 def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> None:
     page = visitor.page
@@ -191,6 +198,7 @@ def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> N
     assert "Traceback" not in page.content()
 
 
+@pytest.mark.slow
 def test_lumped_masses_of_a_beam_are_added_and_removed(visitor, visit) -> None:
     page = visitor.page
     page.get_by_label("Kind").select_option("beam")
@@ -228,6 +236,7 @@ def test_lumped_masses_of_a_beam_are_added_and_removed(visitor, visit) -> None:
     assert page.locator(".error:visible").count() == 0
 
 
+@pytest.mark.slow
 def test_a_block_brings_the_models_that_it_can_have(visitor) -> None:
     page, before = visitor.page, visitor.state()
     page.get_by_label("Kind").select_option("block")
@@ -263,6 +272,7 @@ def wait_for_facts(visitor, section: rf.Section) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_section_takes_the_place_of_stiffness_and_mass_and_gives_them_back(visitor) -> None:
     page = visitor.page
     pier(visitor)
@@ -296,6 +306,7 @@ def test_a_section_takes_the_place_of_stiffness_and_mass_and_gives_them_back(vis
     assert page.locator(".error:visible").count() == 0
 
 
+@pytest.mark.slow
 def test_bad_sizes_are_answered_in_the_form(visitor) -> None:
     page = visitor.page
     pier(visitor)
@@ -311,6 +322,7 @@ def test_bad_sizes_are_answered_in_the_form(visitor) -> None:
     assert "[object" not in page.locator("main").inner_text()
 
 
+@pytest.mark.slow
 def test_a_composite_of_a_beam(visitor) -> None:
     page = visitor.page
     pier(visitor, "beam")
@@ -332,6 +344,7 @@ def test_a_composite_of_a_beam(visitor) -> None:
     page.wait_for_selector("#peaks table")
 
 
+@pytest.mark.slow
 def test_quick_choices_end_with_the_last_one(visitor) -> None:
     page = visitor.page
     pier(visitor)
@@ -351,6 +364,7 @@ def later(route) -> None:
     route.continue_()
 
 
+@pytest.mark.slow
 def test_without_an_invalid_section_the_last_valid_one_counts(visitor) -> None:
     page = visitor.page
     pier(visitor)
@@ -366,6 +380,7 @@ def test_without_an_invalid_section_the_last_valid_one_counts(visitor) -> None:
     assert back["mass_per_length"] == pytest.approx(box.mass_per_length, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_change_begun_in_a_field_that_is_removed_is_dropped(visitor) -> None:
     page = visitor.page
     pier(visitor)

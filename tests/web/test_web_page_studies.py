@@ -58,6 +58,7 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     assert page.locator("#cancel").is_disabled()
 
 
+@pytest.mark.slow
 def test_a_change_asks_for_a_new_run_and_a_new_one_takes_the_place_of_the_old(visitor) -> None:
     page = visitor.page
     visitor.tab("fragility")
@@ -78,6 +79,7 @@ def test_a_change_asks_for_a_new_run_and_a_new_one_takes_the_place_of_the_old(vi
     assert page.locator("#fits tbody tr").count() == 1
 
 
+@pytest.mark.slow
 def test_a_cloud_that_yields(visitor, frame) -> None:
     page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
@@ -107,6 +109,7 @@ def test_a_cloud_that_yields(visitor, frame) -> None:
     assert page.locator("#designs tbody tr").count() == 6
 
 
+@pytest.mark.slow
 def test_design_answers_how_wide(visitor) -> None:
     page = visitor.page
     visitor.tab("design")
@@ -127,6 +130,7 @@ def test_design_answers_how_wide(visitor) -> None:
     visitor.wait_for_error("design.widest", "from 1 to 10, but 999 was given")
 
 
+@pytest.mark.slow
 def test_a_search_is_cancelled_and_told_of_changes(visitor) -> None:
     page = visitor.page
     visitor.fill("structure.frame.n_stories", "15")

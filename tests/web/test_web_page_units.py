@@ -28,6 +28,7 @@ def field(visitor, path):
     return visitor.page.locator(f'[data-path="{path}"] input').first
 
 
+@pytest.mark.slow
 def test_what_is_typed_in_inches_and_kips_is_kept_in_si_units(visit, link):
     visitor = visit(link({"structure": as_json_value(FUSES), "units": "kip-in"}))
     half = field(visitor, "structure.cantilever.half_width")
@@ -48,6 +49,7 @@ def test_what_is_typed_in_inches_and_kips_is_kept_in_si_units(visit, link):
     visitor.page.locator(".foot").filter(has_text="Structure, half width").wait_for()
 
 
+@pytest.mark.slow
 def test_soils_are_in_megapascals_and_rows_stay_open_in_other_units(visit, link):
     bed = {"bed": {"breadth": 4.0, "shear_modulus": 39e6, "poisson_ratio": 0.3, "method": "gazetas"}, "mat_mass": 1e5}
     visitor = visit(link({"structure": as_json_value(FUSES), "ground": bed, "models": ["2DOF-S"], "units": "kN"}))
@@ -65,6 +67,7 @@ def test_soils_are_in_megapascals_and_rows_stay_open_in_other_units(visit, link)
     assert visitor.state()["ground"]["bed"]["shear_modulus"] == pytest.approx(10e3 * constants.psi, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_forty_kilonewtons_are_forty_thousand_newtons_in_a_field(visit, link):
     springs = {"springs": {"stiffness": 4e8, "positions": [-1.0, 1.0], "heave_damping_ratio": 0.3}}
     visitor = visit(link({"structure": as_json_value(FUSES), "ground": springs, "models": ["2DOF-S"], "units": "kN"}))
@@ -92,6 +95,7 @@ def test_every_unit_gives_back_what_was_typed(visit):
         assert si[5:] == typed[5:]
 
 
+@pytest.mark.slow
 def test_results_in_kips_and_inches_are_those_in_si_units(visit, link, client):
     state = client.state(structure=as_json_value(FUSES), scale=2.0, units="kip-in")
     models = client.ask("/api/response", state)["models"]
@@ -128,6 +132,7 @@ def test_results_in_kips_and_inches_are_those_in_si_units(visit, link, client):
     assert float(pga.inner_text()) == pytest.approx(float(pga.get_attribute("data-value")) / 9.81, rel=6e-4)
 
 
+@pytest.mark.slow
 def test_the_link_keeps_the_units_and_files_are_in_si_units(visit, client):
     visitor = visit()
     half = visitor.state()["structure"]["cantilever"]["half_width"]
@@ -146,6 +151,7 @@ def test_the_link_keeps_the_units_and_files_are_in_si_units(visit, client):
     assert "kN m" not in report.decode()
 
 
+@pytest.mark.slow
 def test_other_units_keep_the_runs_of_a_study(visit, link, client):
     visitor = visit(link(client.state(tab="fragility")))
     visitor.page.wait_for_function("() => document.querySelector('#status').textContent.includes('Done: ')")

@@ -49,6 +49,7 @@ def opened(client, content: bytes) -> dict:
     return answer
 
 
+@pytest.mark.slow
 def test_the_table_and_the_ghosts_are_those_of_compare(client, state, el_centro) -> None:
     narrow, wide = make_frame(), make_frame(aspect_ratio=8.0)
     ground = rf.Ground(springs=rf.Springs([-1, 1] * np.array(narrow.rocking().half_width), 5e8, 1e6), base_inertia=2e4)
@@ -190,6 +191,7 @@ def repacked(content: bytes, changed: dict[str, bytes | str]) -> bytes:
     return packed.getvalue()
 
 
+@pytest.mark.slow
 def test_a_file_of_a_stranger_takes_no_memory_and_no_time(client, tmp_path) -> None:
     good = project_file(tmp_path, {"a": FRAME}, PULSE, "MDOF-S")
     frame = "structures/001_a.toml"

@@ -41,6 +41,7 @@ def same():
     return rf.simulate_set(FRAME, chosen, "MDOF-S", rule="ec8", free_vibration=5.0)
 
 
+@pytest.mark.slow
 def test_the_numbers_are_the_librarys(done, same) -> None:
     _, answer = done
     assert (answer["done"], answer["total"]) == (7, 7)
@@ -88,6 +89,7 @@ def test_demands_checks_and_the_report_are_in_the_units_of_the_page(client, stat
     assert "kN m" not in report
 
 
+@pytest.mark.slow
 def test_files_of_a_set(client, state, done, same, tmp_path, monkeypatch) -> None:
     path = f"/api/study/record_set/{done[0]}"
     name, report = client.download(f"{path}/report", state)
@@ -127,6 +129,7 @@ def test_a_set_that_is_no_longer_kept_is_told(client, state, done, monkeypatch) 
     assert "Simulate it again" in client.refused(f"/api/study/record_set/{done[0]}", state)[""]
 
 
+@pytest.mark.slow
 def test_the_checks_of_a_run_are_the_librarys(client, state, el_centro) -> None:
     found = client.ask("/api/response", state | {"scale": 2.0})["checks"]
     run = rf.simulate(FRAME, el_centro.scaled(2.0), "MDOF-S", free_vibration=5.0)
@@ -194,6 +197,7 @@ def test_the_way_from_the_first_screen_to_the_report_of_a_set(visit) -> None:
     assert page.locator("#of-records tbody tr").count() == 7
 
 
+@pytest.mark.slow
 @pytest.mark.web
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_set_on_the_page(visit, link, client, state, same, scheme) -> None:

@@ -59,6 +59,7 @@ MEASURE = """() => {
 }"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_one_sheet(browser, case, tmp_path):
     structure, motion, models, options = CASES[case]
@@ -85,6 +86,7 @@ def test_one_sheet(browser, case, tmp_path):
     assert asked == [path.as_uri()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("notes", NOTES)
 def test_notes_of_any_kind_stay_on_the_sheet(browser, notes, tmp_path):
     few = runs(FRAME, PULSE, ["2DOF-S", "MDOF-S"])

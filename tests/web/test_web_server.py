@@ -89,6 +89,7 @@ def test_what_is_assumed_is_simulated(client) -> None:
     assert client.ask("/api/response", block)["suggested_yield"] is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
 def test_every_preset_answers_on_every_tab(client, preset) -> None:
     state = client.state(structure=as_json_value(preset["structure"]))
@@ -166,6 +167,7 @@ WEAKLY_DAMPED = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("structure", "models", "free", "said"),
     [
@@ -184,6 +186,7 @@ def test_runs_that_take_too_long_are_refused(client, structure, models, free, sa
     assert time.perf_counter() - begun < HANG
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("frame", "model"), [(TALL, "3DOF-S"), (MANY, "MDOF-S")])
 def test_tall_structures_with_fewer_models_or_modes_are_not_refused(client, frame, model) -> None:
     record = {"suite": "fema-p695-far-field", "name": "FF-12-a"}
@@ -227,6 +230,7 @@ def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
     assert block["run"]["fixed_base_moment"] is None
 
 
+@pytest.mark.slow
 def test_many_stories_are_judged_in_time(client) -> None:
     tall = client.state()["structure"]
     tall["frame"] |= {"n_stories": 200, "period": 4.0}
@@ -307,6 +311,7 @@ def test_an_error_of_the_server_shows_no_traceback(client, monkeypatch) -> None:
     assert answer == {"errors": {"": "An internal error occurred; the log of the server has the details."}}
 
 
+@pytest.mark.slow
 def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     _, found = upload(client)
@@ -376,6 +381,7 @@ def test_half_a_character_in_a_name_is_refused(client, endpoint) -> None:
     assert client.post(f"/api/{endpoint}", text.encode())[0] == 422
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", range(900, 1000, 5))
 def test_a_nested_focus_is_no_error(client, depth) -> None:
     text = json.dumps({"state": client.state()})[:-1] + ',"focus":' + "[" * depth + "]" * depth + "}"
@@ -492,6 +498,7 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly(how) -> None:
     assert "Traceback" not in said
 
 
+@pytest.mark.slow
 def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -> None:
     program = (
         "import time\nimport rockflex.web._app as app\n"
@@ -511,6 +518,7 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
     assert "Traceback" not in said
 
 
+@pytest.mark.slow
 def test_an_address_for_everybody_is_warned_of_and_a_port_checked() -> None:
     done = subprocess.run([*RUN, "--host", "192.0.2.1", "--port", "8080"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 2

@@ -137,6 +137,7 @@ def test_messages_about_matrices_speak_of_the_page() -> None:
             assert word not in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "structure",
     [FRAME | {"tendons": [{"a": 1}] * 40_000}, FRAME | {f"k{n}": 1 for n in range(100_000)}],

@@ -143,6 +143,7 @@ def test_an_element_that_breaks_is_told(client) -> None:
     assert row["elongation"] > 5e-3
 
 
+@pytest.mark.slow
 def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, pier_run) -> None:
     monkeypatch.chdir(tmp_path)
     elements = [*PIER["elements"], {"kind": "viscous_damper", "coefficient": 1e5}]
@@ -202,6 +203,7 @@ def state_of(ground, **other):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", GROUNDS)
 @pytest.mark.parametrize("eccentricity", [None, 0.05])
 def test_runs_programs_and_studies_have_the_ground(made, tmp_path, monkeypatch, ground, eccentricity):
@@ -325,6 +327,7 @@ def test_the_form_has_a_section_of_one_part(kind):
     assert [each["name"] for each in sizes] == names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_section_makes_the_structure_and_the_program(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -78,6 +78,7 @@ def test_a_cloud_is_cancelled(client) -> None:
     assert answer["done"] < answer["total"]
 
 
+@pytest.mark.slow
 def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     state = client.state(design=DESIGN)
@@ -101,6 +102,7 @@ def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == found["max_rotation"].tolist()
 
 
+@pytest.mark.slow
 def test_studies_have_the_assumptions_of_the_response(client, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     assumed = {"impact": "complete", "bouc_wen": {"yield_displacement": 0.05}}

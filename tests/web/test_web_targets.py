@@ -32,6 +32,7 @@ TARGETS = [
 LONG = {"longest": 1.9}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("choice", "target"), TARGETS, ids=[choice["kind"] for choice, _ in TARGETS])
 def test_the_choice_is_that_of_the_library(client, choice, target) -> None:
     state = client.state(target=choice | LONG)
@@ -53,6 +54,7 @@ def test_the_choice_is_that_of_the_library(client, choice, target) -> None:
     assert view["high"] == pytest.approx(np.exp(logs.mean(axis=0) + logs.std(axis=0, ddof=1)).tolist(), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_options_of_the_choice(client) -> None:
     options = {"measure": "rotd50", "per_event": 1, "record_weight": 0.3, "least_ratio": 0.9}
     choice = {"count": 5, "smallest": 0.2, "largest": 6.0, **options}
@@ -95,6 +97,7 @@ def test_a_choice_that_nobody_waits_for_is_not_begun(client) -> None:
     assert len(selection_view(state, UploadedRecords())["records"]) == 9
 
 
+@pytest.mark.slow
 def test_files_of_the_choice(client, tmp_path, monkeypatch) -> None:
     state = client.state(target={"count": 3})
     chosen = SUITE.select(rf.ec8_spectrum(0.25 * G, "C"), 3, (0.2, 2.0))
@@ -114,6 +117,7 @@ def test_files_of_the_choice(client, tmp_path, monkeypatch) -> None:
         assert space["chosen"].names == SUITE.select(target, 7, (0.2, 1.9)).names
 
 
+@pytest.mark.slow
 def test_chosen_records_are_a_suite_of_the_studies(client, frame, tmp_path) -> None:
     cloud = {"suites": ["chosen"], "models": ["2DOF-S"], "scales": [1.0]}
     state = client.state(target={"count": 4, "kind": "asce7"}, cloud=cloud)

@@ -111,6 +111,7 @@ def test_a_name_with_folders_is_no_path(tmp_path) -> None:
     assert len(clean_upload_name("x" * 500)) == 80
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "text"),
     [
@@ -130,6 +131,7 @@ def test_a_bad_record_is_refused_with_a_reason(content, text) -> None:
     assert text in refusal(read_uploaded_record, "mine.txt", content, None, None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
     [
@@ -358,6 +360,7 @@ def folder(tmp_path_factory):
     return place
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("archive", [False, True])
 def test_a_folder_is_what_the_library_surveys(client, folder, archive) -> None:
     status, found = give(client, body_of({"records.zip": zipped(GIVEN)} if archive else GIVEN))
@@ -450,6 +453,7 @@ def test_names_that_point_out_of_the_folder_are_refused(name) -> None:
         assert "points out of its folder" in refusal(unpacked_record_files, body)
 
 
+@pytest.mark.slow
 def test_archives_that_grow_are_refused() -> None:
     zeros = b"0\n" * (MAX_FILE_BYTES // 2 - 10)
     bomb = zipped({f"{i}.txt": zeros for i in range(MAX_FOLDER_BYTES // len(zeros) + 1)})
