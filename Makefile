@@ -20,13 +20,15 @@ export CC := $(abspath $(BIN))/python -m ziglang cc
 export AR := $(abspath $(BIN))/python -m ziglang ar
 TOOLS += ziglang
 endif
-WORKERS ?= 2
+# Processes that share the tests, if not one more than there are cores, as some tests wait for other processes.
+WORKERS ?=
+CHECKS := $(BIN)/python scripts/checks.py $(if $(WORKERS),--workers $(WORKERS))
 # A file of each layer, and of each library.
 LOWEST_TESTS := engine unit/test_structure_file.py unit/test_motion_readers.py unit/test_motion_targets.py \
 	unit/test_response_history.py unit/test_response_exports.py unit/test_study_cloud.py unit/test_study_run.py \
 	unit/test_fragility_lognormal.py unit/test_plot_history.py unit/test_run_report.py unit/test_cli_run.py
 
-.PHONY: demo figures test test-portable test-sanitized test-lowest check lint types docs validate bench records clean help
+.PHONY: demo figures test test-all say-test say-test-all browser test-portable test-sanitized test-lowest check lint types docs validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
@@ -51,12 +53,19 @@ figures: $(INSTALLED)  ## every table and figure of the paper, with a report; in
 	$(BIN)/rockflex reproduce --out out/paper --force
 	$(BIN)/python examples/rocking_spectra.py
 
-test: lint types $(READY)  ## lint, types and every test; those of the web page in a real browser if one is installed
-	-sh scripts/install_browser.sh
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
+test: say-test $(READY) browser  ## tests of every layer, the page's main way in a real browser; then lint and types
+	@$(CHECKS) tests lint types
+
+test-all: say-test-all $(READY) browser  ## every test, lint and types
+	@$(CHECKS) tests slow-tests lint types
+
+say-test say-test-all: say-%:
+	@$(PYTHON) scripts/checks.py --say $(if $(wildcard $(READY)),,environment) tests $(if $(findstring all,$*),slow-tests) lint types
+browser: $(READY)
+	-@sh scripts/install_browser.sh
 
 test-portable: $(READY)  ## the numerically sensitive tests, as on another processor
-	$(BIN)/python scripts/portable_tests.py -n $(WORKERS) --dist loadgroup
+	@$(CHECKS) portable
 
 test-sanitized: $(READY)  ## the engine and runs of all models with every index checked, under the address sanitizer of gcc
 	rm -rf build/sanitized
@@ -81,7 +90,7 @@ test-lowest: $(LOWEST)/bin/uv  ## quick tests of every layer with the oldest ver
 		$(addprefix tests/,$(LOWEST_TESTS))
 
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"
+	$(BIN)/python -m pytest -n auto --dist loadgroup -q -m "not slow and not web"
 
 lint: $(READY)  ## ruff: style, docstrings, error messages
 	$(BIN)/ruff check .

@@ -43,3 +43,14 @@ def stripes():
 @pytest.fixture(scope="session")
 def designed():
     return rf.run_design(STRUCTURE, list(SUITE), WIDTHS, LEVELS, scales=[1.0, 2.0])
+
+
+EMPTY = '<svg viewBox="0 0 1 1"></svg>'
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Reports whose figures are empty, for tests of their words and numbers: drawing takes most of the time."""
+    import rockflex.plot
+
+    monkeypatch.setattr(rockflex.plot, "figure_as_svg", lambda figure: EMPTY)

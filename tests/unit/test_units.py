@@ -109,6 +109,7 @@ def units_of(text):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("kind", RESULTS)
 def test_values_of_reports_are_the_same_in_every_system(kind, tmp_path):
     responses, options = RESULTS[kind](), {"appendix": True} if kind == "run" else {}
