@@ -9,6 +9,8 @@ READY  := $(VENV)/.ready
 RISK   := $(VENV)-risk
 # The oldest versions that pyproject.toml allows.
 LOWEST := $(VENV)-lowest
+# The newest versions that there are.
+NEWEST := $(VENV)-newest
 # Python compiles a module at its first import; pip would compile thousands that are never imported.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 # The engine is compiled by the tools in .venv, which also compile it anew at the next import after a change.
@@ -28,7 +30,8 @@ LOWEST_TESTS := engine unit/test_structure_file.py unit/test_motion_readers.py u
 	unit/test_response_history.py unit/test_response_exports.py unit/test_study_cloud.py unit/test_study_run.py \
 	unit/test_fragility_lognormal.py unit/test_plot_history.py unit/test_run_report.py unit/test_cli_run.py
 
-.PHONY: demo figures test test-all say-test say-test-all browser test-portable test-sanitized test-lowest check lint types docs validate bench records clean help
+.PHONY: demo figures test test-all say-test say-test-all browser test-portable test-sanitized test-lowest test-newest wheels \
+	check lint types docs validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
@@ -89,6 +92,22 @@ test-lowest: $(LOWEST)/bin/uv  ## quick tests of every layer with the oldest ver
 	$(LOWEST)/bin/python -m pytest -p no:cacheprovider -W default::DeprecationWarning -m "not slow and not web" \
 		$(addprefix tests/,$(LOWEST_TESTS))
 
+# The newest Python of this machine, unless PYTHON is given.
+$(NEWEST)/bin/uv:
+	$(if $(filter file,$(origin PYTHON)),"$$($(PYTHON) scripts/pythons.py | head -1)",$(PYTHON)) -m venv $(NEWEST)
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check uv
+
+test-newest: export VIRTUAL_ENV := $(abspath $(NEWEST))
+test-newest: $(NEWEST)/bin/uv  ## the quick tests with the newest Python found and the newest of what the package needs
+	$(NEWEST)/bin/uv pip install --quiet --upgrade --reinstall-package rockflex '.[dev]'
+	@$(NEWEST)/bin/python -c "import sys, numpy, pandas, scipy; print('Python', sys.version.split()[0], \
+		*(f'{m.__name__} {m.__version__}' for m in (numpy, scipy, pandas)))"
+	$(NEWEST)/bin/python -m pytest -p no:cacheprovider -n auto --dist loadgroup -q \
+		-m "not slow and not web"
+
+wheels:  ## a wheel in dist for each Python found, tested in an empty environment
+	$(PYTHON) scripts/build_wheels.py
+
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n auto --dist loadgroup -q -m "not slow and not web"
 
@@ -97,7 +116,7 @@ lint: $(READY)  ## ruff: style, docstrings, error messages
 	$(BIN)/ruff format --check .
 
 types: $(READY)  ## pyright (strict) on src
-	$(BIN)/basedpyright src
+	$(BIN)/basedpyright --pythonpath $(BIN)/python src
 
 docs: $(READY)  ## build the documentation in build/docs; warnings are errors
 	$(EDITABLE) '.[docs]'
@@ -126,5 +145,5 @@ records: $(READY)  ## regenerate the embedded records from the packages that shi
 	$(BIN)/python scripts/convert_records.py
 
 clean:  ## remove everything that the targets created
-	rm -rf $(VENV) $(RISK) $(LOWEST) out build dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(RISK) $(LOWEST) $(NEWEST) out build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

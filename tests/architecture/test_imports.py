@@ -83,6 +83,7 @@ HOME = {
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},
+    "anyio": {"web"},
     "tomli_w": {"project", "web"},
     "obspy": {"motion"},
     "openpyxl": {"motion"},
@@ -95,6 +96,10 @@ NOT_LOADED = {
     *("scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
     *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),
 }  # by `import rockflex`
+ONLY_FOR_REPORTS = {
+    *("matplotlib", "PIL", "jinja2", "markupsafe", "statsmodels", "scipy.stats"),
+    *("anyio", "starlette", "uvicorn", "tomli_w", "docx", "xarray"),
+}  # with the page and fits
 MAX_LINES = 600
 MAX_LINES_OF_ONE_TOPIC = 900  # of a module that is one class, or figures of one topic
 ONE_TOPIC = {
@@ -358,3 +363,36 @@ def test_a_first_run_loads_no_heavy_library():
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "numpy" in loaded
     assert not {"scipy", "pandas", "pyarrow", "pydantic", "matplotlib", "typer", "jinja2"} & {*loaded}
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        "rf.simulate(frame, motion)",
+        "rf.simulate_many(frame, motion, ['2DOF-S', 'MDOF-S'], scales=(1.0, 2.0)).to_csv('many.csv')",
+        "rf.run_cloud(frame, motion, '2DOF-S', scales=[1.0, 2.0])",
+        "main(['run', 'a.toml', 'el-centro-1940', '--model', '2DOF-S,MDOF-S', '--out', 'results', '--figures', '0'])",
+        "main(['cloud', 'cloud.toml', '--dry-run'])",
+        "main(['modes', 'a.toml'])",
+    ],
+)
+def test_runs_need_nothing_that_only_reports_the_page_and_fits_need(work, tmp_path):
+    """As if what draws, serves and fits were not installed."""
+    text = (
+        "n_stories = 2\nstory_height = 3.0\nstory_mass = 40e3\nbase_mass = 40e3\nstiffness_ratio = 1.0\nperiod = 0.5\n"
+    )
+    text += "aspect_ratio = 8.0\ndamping_ratio = 0.02\n"
+    (tmp_path / "a.toml").write_text(f"[frame]\n{text}", "utf-8")
+    cloud = 'study = "cloud"\nmodels = ["2DOF-S"]\nscales = [1.0]\n[records]\nsuites = ["el-centro-1940"]\n'
+    (tmp_path / "cloud.toml").write_text(f"{cloud}[[structures]]\n[structures.frame]\n{text}", "utf-8")
+    code = (
+        "import sys\n"
+        f"sys.modules.update(dict.fromkeys({sorted(ONLY_FOR_REPORTS)!r}))\n"
+        "import rockflex as rf\n"
+        "from rockflex.cli._app import app\n"
+        "main = lambda words: app(words, standalone_mode=False)\n"
+        "frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)\n"
+        "motion = rf.load_suite('el-centro-1940')[0]\n" + work
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr

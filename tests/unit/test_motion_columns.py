@@ -459,7 +459,6 @@ def test_without_openpyxl(tmp_path, monkeypatch):
 
 
 def test_the_page_takes_workbooks(tmp_path):
-    pytest.importorskip("starlette")
     from rockflex.web._uploads import read_uploaded_record
 
     content = io.BytesIO(write_excel(tmp_path, {"S": [["time (s)", "acc (g)"], *ROWS]}).read_bytes())

@@ -108,7 +108,6 @@ def test_without_obspy(tmp_path, monkeypatch):
 
 
 def test_the_page_reads_no_foreign_formats(obspy, tmp_path):
-    pytest.importorskip("starlette")
     from rockflex.web._refusal import Refusal
     from rockflex.web._uploads import read_uploaded_record
 

@@ -19,10 +19,6 @@ from numpy.typing import NDArray
 import rockflex as rf
 from builders import make_frame
 
-pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
-pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
-
-
 TASKS = [
     "structure",
     "optional",

@@ -35,13 +35,16 @@ def serve(
 ) -> None:
     """Serve the web page: structure, earthquake, response, fragility and design."""
     from rockflex.web import serve as start
-    from rockflex.web._hosts import is_loopback_host, page_address
+    from rockflex.web._hosts import is_loopback_host
 
     if not is_loopback_host(host):
         console.print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
-    console.print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
+
+    def announce(address: str) -> None:
+        console.print_remark(f"{address} (stop with Ctrl-C)")
+
     with suppress(KeyboardInterrupt):  # the usual way to stop it
-        start(port, host, names=name or (), open_browser=open_browser)
+        start(port, host, names=name or (), open_browser=open_browser, on_start=announce)
 
 
 EPILOG = """[bold]Examples[/bold]

@@ -96,7 +96,7 @@ def _further_beam_modes(
     lowest = squares[squares > 0.0].min(initial=np.inf)
     if not np.isfinite(lowest):
         raise np.linalg.LinAlgError("no mode was found")
-    kept: Array = shapes[:, (squares > 0.0) & (squares <= _MAX_SQUARES_RATIO * lowest)]
+    kept = np.asarray(shapes[:, (squares > 0.0) & (squares <= _MAX_SQUARES_RATIO * lowest)], np.float64)
     return kept / np.sqrt(np.einsum("in,in->n", kept, np.asarray(mass @ kept)))
 
 

@@ -76,7 +76,10 @@ class PageServer:
         """Compute outside the event loop, with a limited number of answers at once."""
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
-        return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
+        try:
+            return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
+        except asyncio.CancelledError as error:  # at the end of the server, which would print it with its traceback
+            raise Refusal("The server was stopped.", 503) from error
 
     async def run(self, request: Request, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""

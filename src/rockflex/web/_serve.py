@@ -1,6 +1,6 @@
 """Start of the web page."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from rockflex._checks import checked_whole_number
@@ -10,7 +10,6 @@ from rockflex.web._hosts import page_address
 if TYPE_CHECKING:
     from starlette.applications import Starlette
 
-NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
 KEEP_ALIVE = 20  # s for the next request on an open connection
 GRACE = 3  # s for the answers in progress when the server is stopped
 
@@ -25,19 +24,20 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
         listens on all addresses ("0.0.0.0" or "::"), to each of them and to the name of the machine.
     names
         Other names by which it is reached, such as that of a server in front of it.
-
-    Raises
-    ------
-    InputError
-        If the packages of ``rockflex[web]`` are missing.
     """
-    _check_server_is_installed()
     from rockflex.web._app import create_page_application
 
     return create_page_application(host, names)
 
 
-def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False) -> None:
+def serve(
+    port: int = 8080,
+    host: str = "127.0.0.1",
+    *,
+    names: Sequence[str] = (),
+    open_browser: bool = False,
+    on_start: Callable[[str], object] | None = None,
+) -> None:
     """Serve the web page until interrupted.
 
     A client must send the content of a request within 60 s.
@@ -53,17 +53,19 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
         As for `make_app`.
     open_browser
         Whether to open the page in the browser of this machine.
+    on_start
+        Called with the address of the page once it answers.
 
     Raises
     ------
     InputError
-        If the packages of ``rockflex[web]`` are missing, or the port cannot be opened.
+        If the port cannot be opened.
     """
     number = checked_whole_number("port", port, 1, 65535)
     app = make_app(host, names)
     import signal
     import socket
-    from threading import Thread, Timer, current_thread, main_thread
+    from threading import Thread, current_thread, main_thread
 
     import uvicorn
 
@@ -87,21 +89,20 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     with listener:
         running.start()
-        if open_browser:
-            import webbrowser
-
-            Timer(1.0, webbrowser.open, [page_address(host, number)]).start()
         try:
+            while running.is_alive() and not server.started:
+                running.join(0.02)
+            if server.started:
+                address = page_address(host, number)
+                if on_start is not None:
+                    on_start(address)
+                if open_browser:
+                    import webbrowser
+
+                    # Some browsers of a terminal return only when they are closed.
+                    Thread(target=webbrowser.open, args=(address,), daemon=True).start()
             while running.is_alive():
                 running.join(0.5)
         finally:
             server.should_exit = True
             running.join(GRACE + 2.0)
-
-
-def _check_server_is_installed() -> None:
-    from importlib.util import find_spec
-
-    missing = [name for name in NEEDED if find_spec(name) is None]
-    if missing:
-        raise InputError(f"The web page needs {', '.join(missing)}. Install it: pip install 'rockflex[web]'.")
