@@ -99,7 +99,7 @@ $(NEWEST)/bin/uv:
 
 test-newest: export VIRTUAL_ENV := $(abspath $(NEWEST))
 test-newest: $(NEWEST)/bin/uv  ## the quick tests with the newest Python found and the newest of what the package needs
-	$(NEWEST)/bin/uv pip install --quiet --upgrade --reinstall-package rockflex '.[dev]'
+	$(NEWEST)/bin/uv pip install --quiet --upgrade --reinstall-package rockflex '.[dev]' 'cython>=3.1'
 	@$(NEWEST)/bin/python -c "import sys, numpy, pandas, scipy; print('Python', sys.version.split()[0], \
 		*(f'{m.__name__} {m.__version__}' for m in (numpy, scipy, pandas)))"
 	$(NEWEST)/bin/python -m pytest -p no:cacheprovider -n auto --dist loadgroup -q \
