@@ -55,7 +55,7 @@ def marked(visit, monkeypatch):
     return visitor
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def names(client) -> list[str]:
     """Names of records and suites, models, and a symbol."""
     suites = json.loads(client.request("/api/about")[2])["suites"]
@@ -77,13 +77,13 @@ def names(client) -> list[str]:
 def left_on(visitor, names) -> list[str]:
     """Texts with a word that is no symbol, unit or name, and was not looked up, once what is asked for has come."""
     page, found = visitor.page, list[str]()
-    for _ in range(40):
+    for _ in range(20):
+        visitor.settle()
         page.evaluate("for (const folded of document.querySelectorAll('details')) folded.open = true")
         texts = page.evaluate(LEFT, [[*names, visitor.state()["structure"]["name"]], SENTENCES])
         found = [text for text in texts if re.search(r"[^\W\d_A-Z]{3,}", re.sub(r"\bm?rad\b", "", text))]
         if not found and page.evaluate("!document.querySelector('.stale')"):
             return []
-        page.wait_for_timeout(250)
     return found
 
 
