@@ -272,6 +272,11 @@ class Visitor:
             }"""
         )
 
+    def pictures(self, count: int = 5) -> None:
+        """Wait for a few pictures of the page: what moves or reacts has done so."""
+        frames = "async (count) => { while (count-- > 0) await new Promise(requestAnimationFrame); }"
+        self.page.evaluate(frames, count)
+
     def fill(self, path: str, value: str) -> None:
         box = self.page.locator(f'[data-path="{path}"] input[type="text"]').first
         box.evaluate("e => { for (let d = e; (d = d.parentElement?.closest('details')); ) d.open = true; }")
@@ -365,6 +370,12 @@ def pier() -> rf.Restrained:
 def pier_run(pier: rf.Restrained, el_centro: rf.GroundMotion) -> rf.Response:
     """The pier under El Centro times 2."""
     return rf.simulate(pier, el_centro.scaled(2.0), "MDOF-S", free_vibration=5.0, output="history")
+
+
+@pytest.fixture(scope="session")
+def sheet(browser: Any) -> Any:
+    """A page for files, which a server does not know."""
+    return throttled(browser.new_page())
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,6 @@ pytestmark = pytest.mark.web
 (PIER,) = (each["structure"] for each in PRESETS if each["structure"]["name"] == "Bridge pier")
 (FUSES,) = (each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
 TIME = "rockflexDrawn.player.time"
-FRAMES = "async () => { for (let i = 0; i < 5; i++) await new Promise(requestAnimationFrame); }"  # what moves has moved
 
 
 def handle(visitor, name: str):
@@ -57,23 +56,25 @@ def test_the_page_begins_with_a_pier_that_moves(visit) -> None:
 
 
 def test_it_stands_still_for_those_who_want_that(visit) -> None:
-    page = visit(reduced_motion="reduce").page
+    visitor = visit(reduced_motion="reduce")
+    page = visitor.page
     page.wait_for_function("() => globalThis.rockflexDrawn?.view()")
     time = page.evaluate(TIME)
     assert time == page.evaluate("rockflexDrawn.view().models[0].peaks.time_of_max_rotation")
-    page.evaluate(FRAMES)
+    visitor.pictures()
     assert page.evaluate(TIME) == time
 
 
 @pytest.mark.slow
 def test_a_drag_draws_only_what_answers_bring(visit) -> None:
-    page = visit(reduced_motion="no-preference").page
+    visitor = visit(reduced_motion="no-preference")
+    page = visitor.page
     page.wait_for_function("() => globalThis.rockflexDrawn?.player.playing")
     box = page.locator('[data-handle="B"]').bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
     time = page.evaluate(TIME)
-    page.evaluate(FRAMES)
+    visitor.pictures()
     assert page.evaluate(TIME) == time
     page.mouse.move(box["x"] + 30, box["y"])
     page.wait_for_function(f"t => {TIME} !== t", arg=time)

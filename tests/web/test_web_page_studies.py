@@ -26,7 +26,7 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
         page.get_by_label("Intensity measure").select_option("pga")
     with page.expect_response("**/api/study/cloud/*"):
         page.get_by_label("Intensity measure").select_option("pgv")
-    page.evaluate("new Promise((resolve) => setTimeout(resolve, 200))")
+    visitor.pictures()
     assert page.locator("#status").inner_text().startswith("A quick look")
     held[0].continue_()
     page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Done: ')")
