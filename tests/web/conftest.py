@@ -401,13 +401,13 @@ def left() -> dict[str, list[Visitor]]:
 def visit(browser: Any, server: str, left: dict[str, list[Visitor]]) -> Iterator[Any]:
     here: list[tuple[str, Visitor]] = []
 
-    def new(link: str = "/", folded: bool = False, viewport: Any = None, **options: Any) -> Visitor:
+    def new(link: str | None = "/", folded: bool = False, viewport: Any = None, **options: Any) -> Visitor:
         wishes = {name: options.pop(name) for name in ("color_scheme", "reduced_motion") if name in options}
         key = json.dumps([folded, options])
         visitor = left[key].pop() if left[key] else Visitor(browser, server, folded, options)
         here.append((key, visitor))
         visitor.look(viewport, **wishes)
-        return visitor.open(link)
+        return visitor if link is None else visitor.open(link)
 
     yield new
     said = list[str]()

@@ -56,8 +56,8 @@ def test_kept_ones_are_compared_named_edited_and_removed(visitor, visit, el_cent
     assert page.evaluate(NAMES) == ["narrow", "A"]
     page.get_by_role("button", name="Edit again: narrow").press("Enter")
     page.wait_for_function("() => rockflexPage.state.structure.frame.aspect_ratio === 10")
-    ratio = page.locator('[data-path="structure.frame.aspect_ratio"] input')
-    page.wait_for_function("e => e.value === '10'", arg=ratio.element_handle())
+    ratio = '[data-path="structure.frame.aspect_ratio"] input'  # of the form, which is drawn anew
+    page.wait_for_function("ratio => document.querySelector(ratio)?.value === '10'", arg=ratio)
     wait_for_heads(page, ["narrow", "A", "A to narrow [%]"])  # the present one is the first again
     page.get_by_role("button", name="Remove: A").press("Enter")
     assert page.evaluate("document.activeElement.id") == "keep"

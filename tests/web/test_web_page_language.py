@@ -49,7 +49,7 @@ class Marks(dict[str, str]):
 def marked(visit, monkeypatch):
     """A visitor whose language has every text in quotation marks, on the page and in what the server words."""
     monkeypatch.setattr(_language, "catalogue", lambda name: Marks() if name == "de" else {})
-    visitor = visit(locale="de-DE")
+    visitor = visit(None, locale="de-DE")
     catalogue = {text: f"«{text}»" for text in texts_of_scripts() | texts_of_answers()}
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(json=catalogue))
     return visitor
@@ -142,7 +142,7 @@ def test_every_text_about_records_is_looked_up(marked, names, client, link) -> N
 
 @pytest.mark.slow
 def test_the_language_is_chosen_and_kept(marked, client) -> None:
-    page = marked.page
+    page = marked.open().page
     lang = "document.documentElement.lang"
     assert page.evaluate(lang) == "en"  # whatever that of the browser
     assert page.get_by_role("tab").first.inner_text() == "Structure"
@@ -172,7 +172,7 @@ def test_the_language_is_chosen_and_kept(marked, client) -> None:
 
 @pytest.mark.slow
 def test_a_catalogue_that_is_missing_leaves_the_page_in_english(visit) -> None:
-    visitor = visit()
+    visitor = visit(None)
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(status=404))
     visitor.open("/?lang=de")
     assert visitor.page.get_by_role("tab").first.inner_text() == "Structure"
