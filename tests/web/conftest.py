@@ -1,6 +1,7 @@
 """A server on a port of its own, and a real Chromium before it."""
 
 import base64
+import functools
 import json
 import os
 import shutil
@@ -9,6 +10,7 @@ import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -31,6 +33,26 @@ TASKS = [
     "modes",
 ]  # the forms, unfolded
 MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
+WINDOW = {"width": 1280, "height": 900}
+POLL = 0.02  # s between two looks at work in the background
+THROTTLE = float(os.environ.get("ROCKFLEX_THROTTLE", "1"))  # how many times slower every page of the browser is
+# Counts the requests whose answers the page has not read yet: `Visitor.settle` waits for their end.
+COUNT = """
+globalThis.pendingAnswers = 0;
+const asked = globalThis.fetch;
+globalThis.fetch = async (...given) => {
+  const over = () => setTimeout(() => pendingAnswers--);
+  pendingAnswers++;
+  try {
+    const answer = await asked(...given);
+    answer.clone().arrayBuffer().then(over, over);
+    return answer;
+  } catch (error) {
+    over();
+    throw error;
+  }
+};
+"""
 
 
 def pytest_configure(config):
@@ -42,6 +64,12 @@ class Client:
 
     def __init__(self, url: str) -> None:
         self.url = url
+
+    @functools.cached_property
+    def first(self) -> str:
+        """The first state of the page with a frame of Table 1."""
+        about = json.loads(self.request("/api/about")[2])
+        return json.dumps(about["state"] | {"structure": about["presets"][0]["structure"]})
 
     def request(self, path: str, data: bytes | None = None, method: str | None = None, **headers: str):
         names = {name.replace("_", "-"): value for name, value in headers.items()}
@@ -106,13 +134,13 @@ class Client:
                     name = urllib.parse.unquote(headers["content-disposition"].split("UTF-8''")[1])
                     answer |= {"name": name, "content": body}
                 return answer
-            time.sleep(0.1)
+            time.sleep(POLL)
         pytest.fail(f"The file took more than {seconds} s.")
 
     def state(self, **changes: Any) -> dict[str, Any]:
         """The first state of the page with a frame of Table 1, in SI units, changed."""
-        about = json.loads(self.request("/api/about")[2])
-        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0, "units": "SI"} | changes
+        first = json.loads(self.first)
+        return first | {"scale": 1.0, "units": "SI"} | changes
 
     def wait(self, kind: str, token: str, state: dict[str, Any], seconds: float = 60.0) -> Any:
         """Progress of a study once it is over."""
@@ -121,7 +149,7 @@ class Client:
             answer = self.ask(f"/api/study/{kind}/{token}", state)
             if answer["status"] not in ("waiting", "running"):
                 return answer
-            time.sleep(0.1)
+            time.sleep(POLL)
         pytest.fail(f"The study took more than {seconds} s.")
 
 
@@ -154,6 +182,13 @@ def chromium() -> str | None:
     return next((found for name in names if (found := shutil.which(name))), None)
 
 
+def throttled(page: Any) -> Any:
+    """A page that is as much slower as ROCKFLEX_THROTTLE asks for."""
+    if THROTTLE > 1:
+        page.context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": THROTTLE})
+    return page
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     sync_api = pytest.importorskip("playwright.sync_api", reason="no Playwright: pip install playwright")
@@ -167,11 +202,15 @@ def browser() -> Iterator[Any]:
 
 
 class Visitor:
-    """A page of one visitor, with what its console said."""
+    """A page of one visitor in a context of its own, with what its console said."""
 
-    def __init__(self, page: Any, url: str) -> None:
-        self.page, self.url = page, url
-        self.said: list[str] = []
+    def __init__(self, browser: Any, url: str, folded: bool, options: dict[str, Any]) -> None:
+        self.url, self.said = url, list[str]()
+        self.context = browser.new_context(viewport=WINDOW, **options)
+        unfold = f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)"
+        self.context.add_init_script(f"if (location.protocol === 'http:') {{ {COUNT} {'' if folded else unfold} }}")
+        self.page = page = throttled(self.context.new_page())
+        page.set_default_timeout(180_000)
         # A refusal is an answer, which Chromium writes to its console all the same.
         page.on("console", lambda m: self.said.append(f"{m.type}: {m.text}") if self._matters(m) else None)
         page.on("pageerror", lambda error: self.said.append(f"uncaught: {error}"))
@@ -181,9 +220,36 @@ class Visitor:
     def _matters(message: Any) -> bool:
         return message.type in ("error", "warning") and "Failed to load resource" not in message.text
 
+    def look(self, size: Any = None, color_scheme: Any = "light", reduced_motion: Any = "reduce") -> None:
+        """Look at the page in a window of this size, and with these wishes."""
+        self.page.set_viewport_size(size or WINDOW)
+        self.page.emulate_media(media="null", color_scheme=color_scheme, reduced_motion=reduced_motion)
+
+    def leave(self) -> list[str]:
+        """Leave the page as a new one to the next visitor; return what its console said."""
+        page = self.page
+        page.unroute_all(behavior="ignoreErrors")
+        page.evaluate("localStorage.clear()")
+        page.mouse.move(0, 0)
+        page.goto("about:blank")
+        said, self.said = [*self.said], list[str]()
+        return said
+
     def open(self, link: str = "/") -> "Visitor":
         self.page.goto(self.url + link)
         self.page.wait_for_selector("#view > .columns")
+        return self
+
+    def follow(self, link: str) -> "Visitor":
+        """Follow a link on the open page, which makes all of its tabs anew."""
+        self.page.evaluate(
+            """link => {
+              document.getElementById("view").dataset.shown = "";
+              location.hash = link;
+            }""",
+            link.removeprefix("/"),
+        )
+        self.page.wait_for_selector('#view:not([data-shown=""])')
         return self
 
     def tab(self, name: str) -> None:
@@ -192,6 +258,20 @@ class Visitor:
 
     def state(self) -> dict[str, Any]:
         return self.page.evaluate("rockflexPage.state")
+
+    def settle(self) -> None:
+        """Wait until every answer is there and shown: for three frames nothing is awaited."""
+        self.page.evaluate(
+            """async () => {
+              for (let still = 0; still < 3; await new Promise(requestAnimationFrame))
+                still = pendingAnswers || document.querySelector(".wait") ? 0 : still + 1;
+            }"""
+        )
+
+    def pictures(self, count: int = 5) -> None:
+        """Wait for a few pictures of the page: what moves or reacts has done so."""
+        frames = "async (count) => { while (count-- > 0) await new Promise(requestAnimationFrame); }"
+        self.page.evaluate(frames, count)
 
     def fill(self, path: str, value: str) -> None:
         box = self.page.locator(f'[data-path="{path}"] input[type="text"]').first
@@ -288,27 +368,52 @@ def pier_run(pier: rf.Restrained, el_centro: rf.GroundMotion) -> rf.Response:
     return rf.simulate(pier, el_centro.scaled(2.0), "MDOF-S", free_vibration=5.0, output="history")
 
 
-@pytest.fixture
-def visit(browser: Any, server: str) -> Iterator[Any]:
-    contexts, visitors = [], []
+@pytest.fixture(scope="session")
+def sheet(browser: Any) -> Any:
+    """A page for files, which a server does not know."""
+    return throttled(browser.new_page())
 
-    def new(link: str = "/", folded: bool = False, **options: Any) -> Visitor:
-        usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
-        context = browser.new_context(**{**usual, **options})
-        unfold = f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)"
-        if not folded:
-            context.add_init_script(f"if (location.protocol === 'http:') {unfold}")
-        contexts.append(context)
-        page = context.new_page()
-        page.set_default_timeout(180_000)
-        visitor = Visitor(page, server)
-        visitors.append(visitor)
-        return visitor.open(link)
+
+@pytest.fixture(scope="session")
+def axe() -> Any:
+    """What axe finds on a page: all of its rules, or those about colours alone."""
+    found = pytest.importorskip("axe_playwright_python.sync_playwright", reason="no axe: install rockflex[dev]").Axe()
+
+    def violations(page: Any, *rules: str) -> list[Any]:
+        options = {"resultTypes": ["violations"]} | ({"runOnly": [*rules]} if rules else {})
+        faults = found.run(page, options=options).response["violations"]
+        return [(each["id"], [node["html"][:120] for node in each["nodes"]]) for each in faults]
+
+    return violations
+
+
+@pytest.fixture(scope="session")
+def left() -> dict[str, list[Visitor]]:
+    """Visitors that have left, by the options of their contexts: the next one takes their page, which opens sooner."""
+    return defaultdict(list)
+
+
+@pytest.fixture
+def visit(browser: Any, server: str, left: dict[str, list[Visitor]]) -> Iterator[Any]:
+    here: list[tuple[str, Visitor]] = []
+
+    def new(link: str | None = "/", folded: bool = False, viewport: Any = None, **options: Any) -> Visitor:
+        wishes = {name: options.pop(name) for name in ("color_scheme", "reduced_motion") if name in options}
+        key = json.dumps([folded, options])
+        visitor = left[key].pop() if left[key] else Visitor(browser, server, folded, options)
+        here.append((key, visitor))
+        visitor.look(viewport, **wishes)
+        return visitor if link is None else visitor.open(link)
 
     yield new
-    said = [line for visitor in visitors for line in visitor.said]
-    for context in contexts:
-        context.close()
+    said = list[str]()
+    for key, visitor in here:
+        try:
+            said += visitor.leave()
+            left[key].append(visitor)
+        except Exception:  # such as that of a page that a failed test left closed
+            said += visitor.said
+            visitor.context.close()
     assert said == []
 
 

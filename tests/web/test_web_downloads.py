@@ -3,7 +3,6 @@
 import io
 import json
 import re
-import threading
 import time
 
 import pytest
@@ -87,19 +86,21 @@ def test_a_warning_is_seen(visit, link) -> None:
 
 @pytest.mark.slow
 @pytest.mark.web
-@pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
-def test_a_tab_on_paper(visit, link, client, tab) -> None:
+def test_tabs_on_paper(visit, link, client) -> None:
+    few = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0]}
+    visitor = visit(link(client.state(cloud=few, design=few | {"widths": 3})), color_scheme="dark")
+    for tab in ("structure", "earthquake", "response", "fragility", "design"):
+        visitor.tab(tab)
+        if tab == "response":
+            visitor.shown()
+        if tab in ("fragility", "design"):
+            visitor.run_study()
+        visitor.settle()
+        check_paper(visitor.page, tab)
+
+
+def check_paper(page, tab) -> None:
     pypdf = pytest.importorskip("pypdf", reason="pages are read by pypdf, of rockflex[dev]")
-    visitor = visit(link(client.state()), color_scheme="dark")
-    page = visitor.page
-    visitor.tab(tab)
-    if tab == "response":
-        visitor.shown()
-    if tab == "design":
-        visitor.fill("design.widths", "3")
-    if tab in ("fragility", "design"):
-        visitor.run_study()
-    page.wait_for_load_state("networkidle")
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     page.emulate_media(media="print")
     assert page.evaluate("document.documentElement.dataset.theme") == "light"
@@ -208,7 +209,7 @@ def test_it_can_be_cancelled_and_says_how_far_it_is(client) -> None:
     assert client.request(f"{path}/content")[0] == 404
     assert client.request(path, method="DELETE")[0] == 200
     while (answer := json.loads(client.request(path)[2]))["status"] == "running":
-        time.sleep(0.05)
+        time.sleep(0.02)
     assert answer["status"] == "cancelled"
     assert answer["done"] < answer["total"]
 
@@ -221,26 +222,19 @@ def test_an_unknown_file_is_refused(client) -> None:
 @pytest.mark.slow
 def test_the_page_answers_while_it_draws(client) -> None:
     state = client.state(record=SHORT, models=["MDOF-S", "2DOF-S", "fixed"], free_vibration=10.0)
-    done: list[float] = []
-
-    def draw() -> None:
-        client.made("animation", state)
-        done.append(time.monotonic())
-
-    drawing = threading.Thread(target=draw)
-    drawing.start()
-    time.sleep(0.5)
+    path = f"/api/file/{client.make('animation', state)}"
+    while not json.loads(client.request(path)[2])["done"]:
+        time.sleep(0.02)
     for _ in range(3):
         client.ask("/api/structure", state)
-    answered = time.monotonic()
-    drawing.join()
-    assert answered < done[0]
+    assert json.loads(client.request(path)[2])["status"] == "running"
+    client.request(path, method="DELETE")
 
 
 @pytest.mark.slow
 @pytest.mark.web
 def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) -> None:
-    visitor = visit(link(client.state(record=SHORT)))
+    visitor = visit(link(client.state(record=SHORT, free_vibration=2.0)))
     page = visitor.respond()
     button = page.get_by_role("button", name="Animation (GIF)")
     making = page.locator(".downloads:has([data-file=animation])")
@@ -254,7 +248,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) ->
     assert got.value.suggested_filename == "animation.gif"
     with Image.open(io.BytesIO(content)) as image:
         assert image.format == "GIF"
-        assert image.n_frames > 100
+        assert image.n_frames > 50
         assert image.size[0] == 800
     page.wait_for_function("b => b.ariaBusy === 'false'", arg=button.element_handle())
     assert making.locator("[role=status]").inner_text() == "Saved."
@@ -308,9 +302,8 @@ def test_reports_are_printed(client, monkeypatch) -> None:
         pytest.skip("no browser that prints")
     other = {"name": "A", "structure": PRESETS[1]["structure"], "models": ["MDOF-S"]}
     state = client.state(alternatives=[other])
-    for what in ("report", "comparison"):
-        name, content = client.download(f"/api/file/{what}-pdf", state)
-        assert (name, content[:5]) == (f"{what}.pdf", b"%PDF-")
+    name, content = client.download("/api/file/comparison-pdf", state)
+    assert (name, content[:5]) == ("comparison.pdf", b"%PDF-")
     suites = {"record_set": {"suites": ["fema-p695-near-field-pulse"]}}
     token = client.ask("/api/study/record_set", state | suites)["token"]
     client.wait("record_set", token, state | suites)

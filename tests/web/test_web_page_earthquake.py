@@ -186,7 +186,7 @@ def test_a_late_answer_about_the_record_leaves_the_message_about_the_files(visit
     page.wait_for_function("() => window.refused")
     page.evaluate("letGo()")
     visitor.wait_for_error("record.folder", "a.zip is a damaged archive")
-    page.wait_for_load_state("networkidle")
+    visitor.settle()
     visitor.wait_for_error("record.folder", "a.zip is a damaged archive")
 
 
@@ -257,7 +257,7 @@ def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> N
     page.wait_for_function("() => document.querySelector('#taken').textContent.startsWith('1 record taken')")
     page.evaluate("letGo()")
     page.wait_for_function("() => window.gone")
-    page.wait_for_load_state("networkidle")
+    visitor.settle()
     assert page.locator("#taken").inner_text().startswith("1 record taken")
     assert visitor.state()["record"]["given"] == "alone"
 

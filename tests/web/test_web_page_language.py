@@ -49,13 +49,13 @@ class Marks(dict[str, str]):
 def marked(visit, monkeypatch):
     """A visitor whose language has every text in quotation marks, on the page and in what the server words."""
     monkeypatch.setattr(_language, "catalogue", lambda name: Marks() if name == "de" else {})
-    visitor = visit(locale="de-DE")
+    visitor = visit(None, locale="de-DE")
     catalogue = {text: f"«{text}»" for text in texts_of_scripts() | texts_of_answers()}
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(json=catalogue))
     return visitor
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def names(client) -> list[str]:
     """Names of records and suites, models, and a symbol."""
     suites = json.loads(client.request("/api/about")[2])["suites"]
@@ -77,13 +77,13 @@ def names(client) -> list[str]:
 def left_on(visitor, names) -> list[str]:
     """Texts with a word that is no symbol, unit or name, and was not looked up, once what is asked for has come."""
     page, found = visitor.page, list[str]()
-    for _ in range(40):
+    for _ in range(20):
+        visitor.settle()
         page.evaluate("for (const folded of document.querySelectorAll('details')) folded.open = true")
         texts = page.evaluate(LEFT, [[*names, visitor.state()["structure"]["name"]], SENTENCES])
         found = [text for text in texts if re.search(r"[^\W\d_A-Z]{3,}", re.sub(r"\bm?rad\b", "", text))]
         if not found and page.evaluate("!document.querySelector('.stale')"):
             return []
-        page.wait_for_timeout(250)
     return found
 
 
@@ -142,7 +142,7 @@ def test_every_text_about_records_is_looked_up(marked, names, client, link) -> N
 
 @pytest.mark.slow
 def test_the_language_is_chosen_and_kept(marked, client) -> None:
-    page = marked.page
+    page = marked.open().page
     lang = "document.documentElement.lang"
     assert page.evaluate(lang) == "en"  # whatever that of the browser
     assert page.get_by_role("tab").first.inner_text() == "Structure"
@@ -172,7 +172,7 @@ def test_the_language_is_chosen_and_kept(marked, client) -> None:
 
 @pytest.mark.slow
 def test_a_catalogue_that_is_missing_leaves_the_page_in_english(visit) -> None:
-    visitor = visit()
+    visitor = visit(None)
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(status=404))
     visitor.open("/?lang=de")
     assert visitor.page.get_by_role("tab").first.inner_text() == "Structure"

@@ -125,7 +125,7 @@ def test_play_pause_scrub_and_speed(visitor, frame, el_centro) -> None:
     page.wait_for_function("() => rockflexStage.time() > 0.5")
     page.get_by_role("button", name="Pause").click()
     stopped = page.evaluate("rockflexStage.time()")
-    page.wait_for_timeout(300)
+    visitor.pictures()
     assert page.evaluate("rockflexStage.time()") == stopped
     assert page.locator("#clock").inner_text() == f"{stopped:.2f} s"
     page.get_by_role("button", name="Largest rotation").click()

@@ -26,7 +26,7 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
         page.get_by_label("Intensity measure").select_option("pga")
     with page.expect_response("**/api/study/cloud/*"):
         page.get_by_label("Intensity measure").select_option("pgv")
-    page.evaluate("new Promise((resolve) => setTimeout(resolve, 200))")
+    visitor.pictures()
     assert page.locator("#status").inner_text().startswith("A quick look")
     held[0].continue_()
     page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Done: ')")
@@ -87,8 +87,10 @@ def test_a_cloud_that_yields(visitor, frame) -> None:
     visitor.tab("fragility")
     page.get_by_label("2DOF-S-BW").check()
     visitor.fill("cloud.scales", "1")
+    page.get_by_label("near-field-pulse").check()
+    page.get_by_label("far-field", exact=True).uncheck()
     visitor.run_study()
-    suite, labels = rf.load_suite("fema-p695-far-field"), ["MDOF-S", "2DOF-S-BW"]
+    suite, labels = rf.load_suite("fema-p695-near-field-pulse"), ["MDOF-S", "2DOF-S-BW"]
     runs = rf.run_cloud(frame, suite, labels, [1.0], free_vibration=10.0, bouc_wen=rf.BoucWen(0.05))
     page.get_by_label("Limit state").select_option("rotation")
     visitor.fill("cloud.rotation", "0.02")

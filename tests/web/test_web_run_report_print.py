@@ -3,8 +3,10 @@
 import io
 
 import pytest
+from matplotlib.figure import Figure
 
 import rockflex as rf
+import rockflex.plot
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 
 pytestmark = pytest.mark.web
@@ -59,18 +61,46 @@ MEASURE = """() => {
 }"""
 
 
+@pytest.fixture(scope="module")
+def page(sheet):
+    sheet.set_viewport_size({"width": 794, "height": 1123})
+    return sheet
+
+
+@pytest.fixture(scope="module")
+def several_runs():
+    """The runs of a report with little on it, and of one with much."""
+    few = runs(FRAME, PULSE, ["2DOF-S", "MDOF-S"])
+    full = [
+        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[:4], free_vibration=4.0, impact=rf.Restitution(0.5)),
+        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[4:], free_vibration=4.0),
+    ]
+    return (few, FRAME), (full, HELD)
+
+
+@pytest.fixture
+def blank(monkeypatch):
+    """Figures as large as those of a report, without anything in them."""
+
+    def figure(*_, width, height):
+        return Figure((width / 25.4, height / 25.4), layout="constrained")
+
+    for name in ("draw_run_sheet", "draw_record_strip"):
+        monkeypatch.setattr(rockflex.plot, name, figure)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
-def test_one_sheet(browser, case, tmp_path):
+def test_one_sheet(page, case, tmp_path):
     structure, motion, models, options = CASES[case]
     found = runs(structure, motion, models, free_vibration=4.0, **options)
     words = WORDS if case in ("names", "six", "elements", "overturned") else {}
     path = rf.write_report(found, tmp_path / "run.html", structure=structure, motion=motion, friction=0.5, **words)
-    page = browser.new_page(viewport={"width": 794, "height": 1123})
+    page.emulate_media(media="null")
     asked = []
     page.on("request", lambda request: asked.append(request.url))
     page.goto(path.as_uri())
-    for how in ({"prefer_css_page_size": True}, {"format": "A4"}):
+    for how in ({"prefer_css_page_size": True}, {"format": "A4"})[: 2 if words else 1]:
         sheets = pypdf.PdfReader(io.BytesIO(page.pdf(**how))).pages
         assert len(sheets) == 1
         assert [round(float(side) / 72 * 25.4) for side in sheets[0].mediabox[2:]] == [210, 297]
@@ -78,7 +108,6 @@ def test_one_sheet(browser, case, tmp_path):
     assert all(model in text for model in models)
     page.emulate_media(media="print")
     measured = page.evaluate(MEASURE)
-    page.close()
     assert measured["over"] <= 0
     assert measured["wide"] == []
     assert measured["overlaps"] == 0
@@ -88,15 +117,10 @@ def test_one_sheet(browser, case, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("notes", NOTES)
-def test_notes_of_any_kind_stay_on_the_sheet(browser, notes, tmp_path):
-    few = runs(FRAME, PULSE, ["2DOF-S", "MDOF-S"])
-    full = [
-        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[:4], free_vibration=4.0, impact=rf.Restitution(0.5)),
-        *runs(HELD, EL_CENTRO.scaled(2.0), FULL[4:], free_vibration=4.0),
-    ]
-    page = browser.new_page(viewport={"width": 794, "height": 1123})
+@pytest.mark.usefixtures("blank")
+def test_notes_of_any_kind_stay_on_the_sheet(page, several_runs, notes, tmp_path):
     page.emulate_media(media="print")
-    for found, structure in ((few, FRAME), (full, HELD)):
+    for found, structure in several_runs:
         path = tmp_path / "run.html"
         rf.write_report(found, path, structure=structure, friction=0.3, notes=NOTES[notes], title="A long title " * 12)
         page.goto(path.as_uri())
@@ -105,4 +129,3 @@ def test_notes_of_any_kind_stay_on_the_sheet(browser, notes, tmp_path):
         assert measured["over"] <= 0
         assert measured["overlaps"] == 0
         assert measured["figure"] >= 40.0
-    page.close()

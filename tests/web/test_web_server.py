@@ -25,7 +25,7 @@ from builders import make_frame
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
 from rockflex.study.spec import GroundTable
-from rockflex.web import make_app, serve
+from rockflex.web import _app, make_app, serve
 from rockflex.web._forms import PRESETS
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -234,11 +234,11 @@ def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
 @pytest.mark.slow
 def test_many_stories_are_judged_in_time(client) -> None:
     tall = client.state()["structure"]
-    tall["frame"] |= {"n_stories": 200, "period": 4.0}
+    tall["frame"] |= {"n_stories": 100, "period": 4.0}
     begun = time.perf_counter()
     view = client.ask("/api/structure", client.state(structure=tall))
     assert time.perf_counter() - begun < HANG
-    expected = rf.adequacy(make_frame(n_stories=200, period=4.0).rocking(), base_mass=40e3)
+    expected = rf.adequacy(make_frame(n_stories=100, period=4.0).rocking(), base_mass=40e3)
     assert view["adequacy"]["reason"] == expected.reason
 
 
@@ -377,10 +377,11 @@ def test_half_a_character_in_a_name_is_refused(client, endpoint) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("depth", range(900, 1000, 5))
-def test_a_nested_focus_is_no_error(client, depth) -> None:
-    text = json.dumps({"state": client.state()})[:-1] + ',"focus":' + "[" * depth + "]" * depth + "}"
-    assert client.post("/api/response", text.encode())[0] in (200, 400, 422)
+def test_a_nested_focus_is_no_error(client) -> None:
+    state = json.dumps({"state": client.state(models=["2DOF-S"], free_vibration=0.0)})
+    for depth in range(900, 1000, 5):
+        text = f'{state[:-1]},"focus":{"[" * depth}{"]" * depth}}}'
+        assert client.post("/api/response", text.encode())[0] in (200, 400, 422), depth
 
 
 def test_all_fields_at_fault_are_named_at_once(client) -> None:
@@ -417,12 +418,23 @@ def test_foreign_pages_cannot_send_files(client) -> None:
         assert (status, json.loads(body)["errors"][""]) == (415, "A request must be application/octet-stream.")
 
 
-def test_a_visitor_who_leaves_in_the_middle_leaves_no_traceback(client, caplog) -> None:
+def test_a_visitor_who_leaves_in_the_middle_leaves_no_traceback(client, caplog, monkeypatch) -> None:
+    begun, over = threading.Event(), threading.Event()
+
+    async def watched(*given) -> bytes:
+        begun.set()
+        try:
+            return await read(*given)
+        finally:
+            over.set()
+
+    read = _app._request_body
+    monkeypatch.setattr(_app, "_request_body", watched)
     host, port = client.url.removeprefix("http://").split(":")
     with socket.create_connection((host, int(port))) as connection:
         connection.sendall(BEGUN)
-        time.sleep(0.2)
-    time.sleep(0.5)
+        assert begun.wait(HANG)
+    assert over.wait(HANG)
     assert not [record for record in caplog.records if record.exc_info]
     assert client.request("/api/about")[0] == 200
 
@@ -478,14 +490,13 @@ def page(port: int) -> bytes:
         return answer.read()
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_the_page_is_served_on_loopback_and_stops_cleanly(how) -> None:
+def test_the_page_is_served_on_loopback_and_stops_cleanly() -> None:
     with served(*RUN) as (process, port):
         with socket.socket() as other:
             other.settimeout(1.0)
             # Another address of this machine reaches nothing.
             assert other.connect_ex(("127.0.0.2", port)) != 0
-        process.send_signal(how)
+        process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=HANG)
     assert "Traceback" not in said
 
@@ -505,7 +516,7 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
         )
         while "reading" not in (line := process.stderr.readline()):
             assert line  # at its end nothing would come any more
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
         _, said = process.communicate(timeout=HANG)
     assert "Traceback" not in said
 

@@ -14,7 +14,7 @@ const STUDY_STATUS = {
     counted(total, t("Cancelled after {done} of {n} run.", { done }), t("Cancelled after {done} of {n} runs.", { done })),
   failed: ({ message }) => t("Failed: {message}", { message }),
 };
-const SHOWN = 400; // ms between two polls while the tab is shown
+const SHOWN = 400; // ms between two polls while the tab is shown; the first ones come sooner, for studies that are short
 const ASIDE = 5000; // and while it is not: the server stops a study that is not polled
 
 // Everything that determines the runs of these models, apart from the study's own choices.
@@ -140,11 +140,13 @@ export class Study {
   async #watch() {
     if (this.watching) return;
     this.watching = true;
+    let pause = SHOWN / 8;
     try {
       do {
         await this.load();
-        for (let waited = 0; waited < (this.element.isConnected ? SHOWN : ASIDE); waited += SHOWN)
-          await new Promise((resolve) => setTimeout(resolve, SHOWN));
+        for (let waited = 0; waited < (this.element.isConnected ? pause : ASIDE); waited += pause)
+          await new Promise((resolve) => setTimeout(resolve, pause));
+        pause = Math.min(2 * pause, SHOWN);
       } while (this.token && (!this.answer || goes(this.answer)));
     } finally {
       this.watching = false;
