@@ -17,7 +17,7 @@ from rockflex.report import Remark, ReproducedResult
 if TYPE_CHECKING:
     import pandas as pd
 
-PAIR_COST = 6e-3  # s, see Piece
+PAIR_COST = 9e-3  # s, see Piece
 DRAWS = 400
 MIN_KNOWN_SHARE = 0.95  # share of the draws in which a measure must exist
 FACTOR = 0.6  # on the acceleration of the records
