@@ -81,6 +81,12 @@ def output_file_stems(names: Iterable[str]) -> list[str]:
     return stems
 
 
+def remove_earlier_output(folder: Path) -> None:
+    """Remove the files that an earlier summary in the folder lists as its own, and the summary."""
+    for name in _files_of_earlier_output(folder):
+        (folder / name).unlink(missing_ok=True)
+
+
 def _move_output_files(stage: Path, folder: Path, names: list[str]) -> None:
     if not folder.exists():
         stage.rename(folder)

@@ -4,7 +4,14 @@ A run is one page of HTML, for an appendix; a publication is a page of HTML, the
 numbers.
 """
 
-from rockflex.report._document import ConstructionCheck, PublicationReport, PublishedNumber, Remark, ReproducedResult
+from rockflex.report._document import (
+    ConstructionCheck,
+    FinishedResult,
+    PublicationReport,
+    PublishedNumber,
+    Remark,
+    ReproducedResult,
+)
 from rockflex.report._publication_files import (
     report_numbers_to_csv,
     report_to_html,
@@ -15,6 +22,7 @@ from rockflex.report.run import write_report
 
 __all__ = [
     "ConstructionCheck",
+    "FinishedResult",
     "PublicationReport",
     "PublishedNumber",
     "Remark",

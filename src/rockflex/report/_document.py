@@ -1,11 +1,11 @@
 """A report on a publication: its numbers, checks and remarks, and the results they belong to."""
 
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import asdict, dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -102,14 +102,41 @@ class ReproducedResult:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "figures", MappingProxyType(dict(self.figures)))
 
-    @cached_property
-    def remarks(self) -> tuple[Remark, ...]:
-        """Additional computations, made when first requested, because some take half a minute."""
-        return tuple(remark() for remark in self.remarking)
+    def finished(self) -> "FinishedResult":
+        """Compute the remarks, and draw the figures."""
+        from rockflex.plot import figure_as_svg
+
+        remarks = tuple(remark() for remark in self.remarking)
+        drawings = {stem: figure_as_svg(draw()) for stem, draw in self.figures.items()}
+        return FinishedResult(self.name, self.title, self.numbers, drawings, self.note, self.checks, remarks)
+
+
+@dataclass(frozen=True)
+class FinishedResult:
+    """A reproduced table or figure with all that a report shows of it: plain data, which can be stored."""
+
+    name: str
+    title: str
+    numbers: Sequence[PublishedNumber] = ()
+    drawings: Mapping[str, str] = field(default_factory=dict[str, str])  # the text of the SVG file of each, by its stem
+    note: str = ""
+    checks: Sequence[ConstructionCheck] = ()
+    remarks: Sequence[Remark] = ()
 
     def count(self, verdict: str) -> int:
         """Return how many numbers have a verdict."""
         return sum(number.verdict == verdict for number in self.numbers)
+
+    def to_json(self) -> str:
+        """Write everything as JSON, in which numbers may be Infinity or NaN."""
+        return json.dumps(asdict(self), ensure_ascii=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Read what `to_json` wrote."""
+        found = json.loads(text)
+        parts = {"numbers": PublishedNumber, "checks": ConstructionCheck, "remarks": Remark}
+        return cls(**found | {name: tuple(kind(**each) for each in found[name]) for name, kind in parts.items()})
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +149,8 @@ class PublicationReport:
     versions: Mapping[str, str]  # of everything that the numbers depend on
     verdicts: Mapping[str, str]  # meaning of every verdict, best first
     remarks: Mapping[str, str]  # meaning of every kind of remark
-    sections: Sequence[ReproducedResult]  # in the publication's order
+    sections: Sequence[FinishedResult]  # in the publication's order
+    missing: Sequence[str] = ()  # names of tables and figures that are still to be computed
 
     @property
     def counts(self) -> dict[str, int]:
@@ -138,3 +166,8 @@ class PublicationReport:
             "equivalent specimen, is built, and so are not among the numbers; nor are remarks. A value that the "
             "publication repeats is counted once."
         )
+
+    @property
+    def gaps(self) -> str:
+        """What the report lacks, in a sentence; empty for a complete one."""
+        return f"Unfinished: {', '.join(self.missing)} still to be computed." if self.missing else ""

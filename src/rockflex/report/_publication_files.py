@@ -4,13 +4,13 @@ import csv
 import io
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockflex._files import write_file_atomically
-from rockflex.report._document import PublicationReport, PublishedLine, ReproducedResult
+from rockflex.report._document import FinishedResult, PublicationReport, PublishedLine
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -39,12 +39,15 @@ def inline_svg(drawing: str, stem: str, label: str) -> str:
     return f'{head} role="img" aria-label="{label}" class="drawing">{rest}'
 
 
-def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> str:
-    """Write the document as a page; `drawings` has the text of the SVG file of each figure, by its stem."""
+def report_to_html(document: PublicationReport) -> str:
+    """Write the document as a page."""
     from markupsafe import Markup, escape
 
-    labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
-    figures = {stem: Markup(inline_svg(drawings[stem], stem, label)) for stem, label in labels.items()}
+    figures = {
+        stem: Markup(inline_svg(drawing, stem, str(escape(section.title))))
+        for section in document.sections
+        for stem, drawing in section.drawings.items()
+    }
     *better, worst = document.verdicts
     looks = {name: CLASSES[min(place, 3)] for place, name in enumerate(better)} | {worst: CLASSES[-1]}
     failing = [line for s in document.sections for line in s.numbers if line.verdict == worst]
@@ -75,6 +78,7 @@ def report_to_markdown(document: PublicationReport) -> str:
         plain(document.source),
         f"Records. {plain(document.records)}",
         f"Versions. {versions}.",
+        *([f"**{plain(document.gaps)}**"] if document.gaps else []),
         _table_in_markdown(("verdict", "numbers", "meaning"), verdicts),
         plain(document.checks),
         "\n".join(f"- *Remark, {plain(kind)}.* {plain(meaning)}" for kind, meaning in document.remarks.items()),
@@ -83,11 +87,11 @@ def report_to_markdown(document: PublicationReport) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
+def _section_in_markdown(section: FinishedResult) -> Iterable[str]:
     yield f"## {_escaped_markdown(section.name)}: {_escaped_markdown(section.title)}"
     if section.note:
         yield _escaped_markdown(section.note)
-    for stem in section.figures:
+    for stem in section.drawings:
         yield f"![{_escaped_markdown(section.title)}]({stem}.svg)"
     numbers = [(line, (line.difference_as_text, f"**{line.verdict}**")) for line in section.numbers]
     checks = [(check, ("yes" if check.holds else "**no**",)) for check in section.checks]
@@ -135,25 +139,20 @@ def report_numbers_to_csv(document: PublicationReport) -> str:
     return out.getvalue()
 
 
-def write_publication_report(
-    document: PublicationReport, folder: Path, progress: Callable[[str], None] | None = None
-) -> list[Path]:
-    """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
+def write_publication_report(document: PublicationReport, folder: Path, *, only: str | None = None) -> list[Path]:
+    """Write the figures as SVG, ``report.html``, ``report.md`` and ``numbers.csv``, each completely or not at all.
 
-    `progress` is called with the stem of every figure that is drawn. Returns the files, figures first.
+    With `only`, figures of other sections are taken to be there. Returns the files of the report, figures first.
     """
-    from rockflex.plot import save_figure
-
-    figures: dict[str, Path] = {}
+    files: list[Path] = []
     for section in document.sections:
-        for stem, draw in section.figures.items():
-            figures[stem] = save_figure(draw(), folder / f"{stem}.svg")
-            if progress is not None:
-                progress(stem)
-    drawings = {stem: path.read_text("utf-8") for stem, path in figures.items()}
+        for stem, drawing in section.drawings.items():
+            files.append(folder / f"{stem}.svg")
+            if only in (None, section.name):
+                write_file_atomically(files[-1], drawing.encode())
     texts = {
-        "report.html": report_to_html(document, drawings),
+        "report.html": report_to_html(document),
         "report.md": report_to_markdown(document),
         "numbers.csv": report_numbers_to_csv(document),
     }
-    return [*figures.values(), *(write_file_atomically(folder / name, text.encode()) for name, text in texts.items())]
+    return [*files, *(write_file_atomically(folder / name, text.encode()) for name, text in texts.items())]

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from copy import copy
 from functools import cached_property
 from itertools import repeat
 
@@ -54,14 +55,12 @@ class Friction:
     ----------
     model, states
         As in `History`.
-    printed
-        Use Eqs. 21 and 22 as printed, for every model: with the magnitude of Σ m_i (-g + z''_i).
     """
 
-    def __init__(self, model: RockingModel, states: Array, *, printed: bool = False) -> None:
+    def __init__(self, model: RockingModel, states: Array) -> None:
         self._model = model
         self._states = states
-        self._printed = printed
+        self._printed = False
         self._required: dict[float, float] = {}  # by window: finding it takes long, and checks ask again
         self._rates = accelerations_at_states(model, states)
         self._linear = None if model.bouc_wen is not None else MotionBetween(model)
@@ -69,6 +68,19 @@ class Friction:
         # Upper bound of the factor by which uplift increases the frequencies.
         scale = max(math.sqrt(p.pivot(side).i_theta / model.free_inertia(side)) for side in (1, -1))
         self._fastest = self._linear.fastest if self._linear else float(p.omega.max(initial=0.0) * scale)
+
+    @cached_property
+    def as_printed(self) -> "Friction":
+        """The same by Eqs. 21 and 22 as printed, for every model: with the magnitude of Σ m_i (-g + z''_i)."""
+        other = copy(self)
+        other._printed, other._required = True, {}
+        for name in ("reactions", "demand", "_looks", "_rise"):
+            other.__dict__.pop(name, None)
+        if self._stretches.size:  # the motion between the states, which takes the longest, is the same
+            signs = (other,) if "_looks" in self.__dict__ else (self, other)
+            for each, looks in zip(signs, self._looks_of(*signs), strict=True):
+                each.__dict__["_looks"] = looks
+        return other
 
     @cached_property
     def reactions(self) -> Reactions:
@@ -178,7 +190,13 @@ class Friction:
     @cached_property
     def _looks(self) -> Array:
         """Angles at places from 0 to 1 of every interval, shape (n_places, n_intervals)."""
-        return np.stack(list(self._angles(self._states, self._rates, self._places.tolist())))
+        (found,) = self._looks_of(self)
+        return found
+
+    def _looks_of(self, *signs: "Friction") -> list[Array]:
+        """Return `_looks` with each of some signs of the weight, from the same motion."""
+        every = list(self._angles(self._states, self._rates, self._places.tolist(), signs))
+        return [np.stack(each) for each in zip(*every, strict=True)]
 
     @cached_property
     def _rise(self) -> Array:
@@ -196,15 +214,17 @@ class Friction:
     def _angle_at(self, k: int, place: float) -> float:
         """Return the angle at a place of one interval."""
         pair = slice(self._stretches[k], self._stretches[k] + 2)
-        return float(next(self._angles(self._states[pair], self._rates[pair], [place]))[0])
+        return float(next(self._angles(self._states[pair], self._rates[pair], [place], (self,)))[0][0])
 
-    def _angles(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[Array]:
-        """Yield the angles at rising places of every interval of positive length."""
+    def _angles(
+        self, states: Array, rates: Array, places: Sequence[float], signs: Sequence["Friction"]
+    ) -> Iterator[list[Array]]:
+        """Yield the angles with each of some signs at rising places of every interval of positive length."""
         lasting = np.diff(states[:, TIME]) > 0.0
         for rows, moved in self._between(states, rates, places):
             inside = rows[lasting]
             known = accelerations_at_states(self._model, inside) if moved is None else moved[lasting]
-            yield self._angle(self._reactions_at(inside, known))
+            yield [each._angle(each._reactions_at(inside, known)) for each in signs]
 
     def _between(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[tuple[Array, Array | None]]:
         """Yield states at rising places of every interval, and accelerations if these do not follow from the states.

@@ -461,7 +461,7 @@ class History(Value):
         return Friction(self.model, self.states)
 
     def _friction_by(self, printed: bool) -> Friction:
-        return Friction(self.model, self.states, printed=True) if printed else self._friction
+        return self._friction.as_printed if printed else self._friction
 
     def floor_motion(self, floor: SupportsIndex, dt: float | None = None, *, impulses: bool = True) -> GroundMotion:
         """Return the total horizontal acceleration of a floor as a motion, for its measures and spectra.

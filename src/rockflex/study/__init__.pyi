@@ -36,6 +36,7 @@ from ._result_tables import result_row as result_row
 from ._result_tables import tables_to_dataframe as tables_to_dataframe
 from ._run_matrix import RunMatrix as RunMatrix
 from ._run_matrix import StudyMatrix as StudyMatrix
+from ._run_matrix import record_checksums as record_checksums
 from ._run_matrix import record_columns as record_columns
 from ._run_matrix import record_facts as record_facts
 from ._run_matrix import record_groups as record_groups

@@ -45,10 +45,10 @@ class ProgressLogLines:
     def __init__(self, title: str, *, last: bool, clock: Callable[[], float] = perf_counter) -> None:
         self.title, self.last, self.clock = title, last, clock
         self.start = self.written_at = clock()
-        self.first: int | None = None  # done before the start, by an earlier call
-        self.written = 0
+        self.first: float | None = None  # done before the start, by an earlier call
+        self.written = 0.0
 
-    def show(self, done: int, total: int, remark: str = "") -> None:
+    def show(self, done: float, total: float, remark: str = "") -> None:
         """Write a line if it is time for one."""
         now = self.clock()
         if self.first is None:
@@ -59,15 +59,16 @@ class ProgressLogLines:
             self.written_at, self.written = now, done
             print(self._line(done, total, remark, now - self.start), file=sys.stderr, flush=True)
 
-    def _line(self, done: int, total: int, remark: str, elapsed: float) -> str:
+    def _line(self, done: float, total: float, remark: str, elapsed: float) -> str:
         made = done - (self.first or 0)
-        text = f"{self.title}: {done} of {total} ({100 * done // max(total, 1)} %), {duration_text(elapsed)} elapsed"
+        text = f"{self.title}: {done:.0f} of {total:.0f} ({100 * done // max(total, 1):.0f} %)"
+        text += f", {duration_text(elapsed)} elapsed"
         if made and done < total:
             text += f", about {duration_text(elapsed / made * (total - done))} left"
         return f"{text}, {remark}" if remark else text
 
 
-Show = Callable[[int, int, str], None]
+Show = Callable[[float, float, str], None]
 
 REFRESH_INTERVAL = {"terminal": 0.1, "notebook": 0.3}  # s between two pictures of the bar
 
@@ -86,7 +87,9 @@ def progress_bar(title: str, *, transient: bool = False) -> Generator[Show]:
         with _notebook_progress_bar(title) as show:
             yield show
     elif console.is_terminal:
-        with _progress_bar_columns(console=console, transient=transient, auto_refresh=False) as drawn:
+        with _progress_bar_columns(
+            console=console, transient=transient, auto_refresh=False, redirect_stdout=sys.stdout.isatty()
+        ) as drawn:
             yield _throttled_progress_display(drawn, title, drawn.refresh, REFRESH_INTERVAL["terminal"])
     else:
         yield ProgressLogLines(title, last=not transient).show
@@ -122,9 +125,9 @@ def _throttled_progress_display(drawn: "RichProgress", title: str, refresh: Call
     """Return a function that draws the bar, but not more often than a person can see."""
     task = drawn.add_task(title, total=None, remark="", left="")
     start, last = perf_counter(), -every
-    first: int | None = None  # done before the start, by an earlier call
+    first: float | None = None  # done before the start, by an earlier call
 
-    def show(done: int, total: int, remark: str) -> None:
+    def show(done: float, total: float, remark: str) -> None:
         nonlocal first, last
         first, now = done if first is None else first, perf_counter()
         # From the whole time: parts may end in bursts, or further apart than any window.

@@ -12,15 +12,27 @@ tested specimens.
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
-from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce_targets, target_title
+from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
+from rockflex.papers.silva_stojadinovic_2024._targets import (
+    TARGETS,
+    finish_target,
+    reproduce_targets,
+    target_cost,
+    target_pieces,
+    target_title,
+)
 
 __all__ = [
     "TARGETS",
     "PaperRecords",
+    "Piece",
     "RemarkKind",
     "Verdict",
     "equivalent_2hz_long_base",
     "equivalent_s1",
+    "finish_target",
     "reproduce_targets",
+    "target_cost",
+    "target_pieces",
     "target_title",
 ]

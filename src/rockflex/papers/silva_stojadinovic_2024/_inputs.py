@@ -1,11 +1,15 @@
 """Records and structures of the paper, and the records used instead of those that are not available."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import rockflex as rf
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 BEHAVIOURS = {"shear": math.inf, "flexure": 0.0}
 STRUCTURES = {
@@ -26,7 +30,7 @@ TOWER = rf.TaperedTower(
     damping_ratio=0.02,
 )  # fmt: skip
 """The chimney of Section 4.1.1."""
-SEEDS, MIN_POPULATIONS, SEED = 20, 10, 2024
+PAIRS, SEEDS, MIN_POPULATIONS, SEED = 1000, 20, 10, 2024
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
 
@@ -57,15 +61,23 @@ class PaperRecords:
     folder : Path or None
         Folder of other records, such as PEER's AT2 files. None for the 72 components of FEMA P-695 without pulses.
     seeds : int
-        Number of populations of a thousand random pairs, at least 10, to find how much Figs. 9 and 13 depend on the
-        draw.
+        Number of populations of random pairs, at least 10, to find how much Figs. 9 and 13 depend on the draw.
     seed : int
         Seed of the first of these populations; the others have the next ones.
+    pairs : int
+        Number of pairs of a population, a thousand in the paper.
+    workers : int or None
+        Threads of studies; None for one per core.
+    tables : dict
+        The tables of the pieces of the work that are done, by their names; shared by all targets.
     """
 
     folder: Path | None = None
     seeds: int = SEEDS
     seed: int = SEED
+    pairs: int = PAIRS
+    workers: int | None = None
+    tables: "dict[str, pd.DataFrame]" = field(default_factory=dict[str, "pd.DataFrame"], repr=False)
 
     def __post_init__(self) -> None:
         if self.seeds < MIN_POPULATIONS:
@@ -75,6 +87,11 @@ class PaperRecords:
             )
         if self.seed < 0:
             raise rf.InputError(f"seed must be a whole number of at least 0, but {self.seed!r} was given.")
+
+    @property
+    def pool_size(self) -> int:
+        """Number of pairs of all populations."""
+        return self.seeds * self.pairs
 
     @cached_property
     def suite(self) -> rf.Suite:

@@ -13,6 +13,7 @@ from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval, bootstrap_intervals
 from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, table_1_frame
+from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
 from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
 if TYPE_CHECKING:
@@ -88,6 +89,7 @@ DISPLACEMENT_STATEMENTS = (
 SLIDING = "Friction that prevents sliding of the prototypes"
 EVERY = 3  # every third record, because the friction of a run needs its history
 FRICTION_RESAMPLES = 400
+FRICTION_COSTS = (5.0, 6.0, 5.0, 8.0, 5.0, 5.0)  # s, see Piece
 SCALES = (1.0, 2.0)
 MODEL = "2DOF-C"  # with which Section 3.1 checks for sliding
 SIGNS = {"printed": "as printed", "mended": "N = Σ m_i (g + z''_i)"}
@@ -139,11 +141,20 @@ def _farthest_from_print(quantity: str, printed: str, values: Mapping[str, float
     return max(lines, key=lambda line: abs(line.difference or 0.0))
 
 
-@lru_cache(maxsize=1)
+def cloud_pieces(_: PaperRecords) -> list[Piece]:
+    """Return the runs of Figs. 5 to 7 as one piece."""
+    return [Piece("cloud", 0, 1, 2.5, _cloud_of_paper)]
+
+
 def run_cloud_of_paper(records: PaperRecords) -> "pd.DataFrame":
     """Run the six structures with three models under every record, at the scales 1 and 2."""
+    (piece,) = cloud_pieces(records)
+    return piece.table(records)
+
+
+def _cloud_of_paper(records: PaperRecords, _: int) -> "pd.DataFrame":
     frames = {name: table_1_frame(name) for name in STRUCTURES}
-    return rf.run_cloud(frames, records.suite, MODELS, (1.0, 2.0))
+    return rf.run_cloud(frames, records.suite, MODELS, (1.0, 2.0), workers=records.workers)
 
 
 @lru_cache(maxsize=2)
@@ -390,23 +401,39 @@ def sliding(records: PaperRecords) -> ReproducedResult:
     )
 
 
-@lru_cache(maxsize=1)
+def friction_pieces(_: PaperRecords) -> list[Piece]:
+    """Return the runs of each structure as a piece; friction takes longer where modes are faster."""
+    return [
+        Piece("friction", n, len(STRUCTURES), cost, _friction_of_structure) for n, cost in enumerate(FRICTION_COSTS)
+    ]
+
+
 def _friction_runs(records: PaperRecords) -> "pd.DataFrame":
     """Return the required friction of every run that rocks and stands, with both signs of Eq. 22."""
     import pandas as pd
 
-    suite = records.suite[::EVERY]
-    groups = rf.run_cloud(table_1_frame("#1"), suite, MODEL).set_index("motion")["group"].astype(str).to_dict()
+    return pd.concat([piece.table(records) for piece in friction_pieces(records)], ignore_index=True)
+
+
+def _friction_of_structure(records: PaperRecords, number: int) -> "pd.DataFrame":
+    import pandas as pd
+
+    suite, name = records.suite[::EVERY], list(STRUCTURES)[number]
+    groups = (
+        rf.run_cloud(table_1_frame(name), suite, MODEL, workers=records.workers)
+        .set_index("motion")["group"]
+        .astype(str)
+        .to_dict()
+    )
     rows: list[dict[str, str | float]] = []
     for model in MODELS:
-        for name in STRUCTURES:
-            for motion in suite:
-                response = rf.simulate(table_1_frame(name), motion, model)
-                if response.status == "rocking":
-                    printed = response.required_friction_excluding_impacts(0.0, printed=True)
-                    row = {"model": model, "structure": name, "group": groups[motion.name]}
-                    rows.append(row | {"printed": printed, "mended": response.required_friction})
-    return pd.DataFrame(rows)
+        for motion in suite:
+            response = rf.simulate(table_1_frame(name), motion, model)
+            if response.status == "rocking":
+                printed = response.required_friction_excluding_impacts(0.0, printed=True)
+                row = {"model": model, "structure": name, "group": groups[motion.name]}
+                rows.append(row | {"printed": printed, "mended": response.required_friction})
+    return pd.DataFrame(rows, columns=["model", "structure", "group", "printed", "mended"])
 
 
 def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, ResampledInterval]:
@@ -453,7 +480,9 @@ def _both_signs_of_friction(records: PaperRecords) -> Remark:
 def _count_of_pivot_lifts(records: PaperRecords) -> Remark:
     """Count the runs in which the pivot would lift."""
     frames = [table_1_frame(name) for name in STRUCTURES]
-    runs = rf.simulate_many(frames, records.suite[::EVERY], MODELS, scales=SCALES, free_vibration="settle")
+    runs = rf.simulate_many(
+        frames, records.suite[::EVERY], MODELS, scales=SCALES, free_vibration="settle", workers=records.workers
+    )
     standing = runs[runs["status"] == "rocking"]
     lifted = standing["min_vertical_reaction"] < 0.0
     rows: list[tuple[str, ...]] = []

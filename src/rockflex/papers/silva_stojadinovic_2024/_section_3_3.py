@@ -1,6 +1,5 @@
 """Sections 3.3 and 3.4, Figures 8, 9 and 13: random pairs of a structure and a record."""
 
-import math
 from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
@@ -11,14 +10,14 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
+from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
 from rockflex.report import Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd
 
-QUANTITIES = ("top_displacement", "base_shear", "base_moment")
-N_LARGEST = 5  # pairs that count as "the largest"
-PAIRS = 1000
+PAIR_COST = 9e-3  # s, see Piece
 DRAWS = 400
 MIN_KNOWN_SHARE = 0.95  # share of the draws in which a measure must exist
 FACTOR = 0.6  # on the acceleration of the records
@@ -92,89 +91,42 @@ COMBINED = {
 }
 
 
-def population_measures(pairs: "pd.DataFrame") -> dict[str, float]:
-    """Return outcomes, agreement and discrepancies of some pairs; NaN where there are too few."""
-    found = rf.population_statistics(pairs, n_resamples=1, n_outliers=2 * N_LARGEST)
-    return (
-        _outcomes_of_pairs(pairs)
-        | _agreement_of_pairs(found)
-        | _modal_combination_of_pairs(found)
-        | _extremes_of_resting_pairs(pairs)
-        | _outlying_pairs(pairs, found)
-    )
+def population_pieces(records: PaperRecords) -> list[Piece]:
+    """Return the populations as pieces: one for each seed, and the first one under weaker records."""
+    count = records.seeds + 1
+    return [Piece("population", n, count, PAIR_COST * records.pairs, _population) for n in range(count)]
 
 
-def _outcomes_of_pairs(pairs: "pd.DataFrame") -> dict[str, float]:
-    every, one = pairs["status_mdof"], pairs["status_2dof"]
-    conditions = {
-        "no uplift": every == "no_uplift",
-        "rocking": every == "rocking",
-        "overturned": every == "overturned",
-        "beyond the limit, MDOF-S": pairs["nominal_overturning_mdof"].astype(bool),
-        "beyond the limit, 2DOF-S": pairs["nominal_overturning_2dof"].astype(bool),
-        "2DOF-S alone uplifts": (every == "no_uplift") & (one != "no_uplift"),
-    }
-    return {name: float(condition.sum()) for name, condition in conditions.items()}
+def first_population_piece(records: PaperRecords) -> list[Piece]:
+    """Return the population that the figures show."""
+    return population_pieces(records)[:1]
 
 
-def _agreement_of_pairs(found: rf.PopulationStatistics) -> dict[str, float]:
-    """R² and slopes of Section 3.3, such as ``"r2, rocking, rotation, all"``."""
-    rows = found.agreement.to_dict("records")
-    return {
-        f"{value}, {row['group']}, {row['quantity']}, {row['behaviour']}": float(row[value])
-        for row in rows
-        for value in ("r2", "slope")
-    }
+def _population(records: PaperRecords, number: int) -> "pd.DataFrame":
+    """Run random structures, each with MDOF-S and 2DOF-S under a record drawn for it."""
+    if number < records.seeds:
+        return rf.run_population(records.suite, records.pairs, records.seed + number, workers=records.workers)
+    weaker = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
+    return rf.run_population(weaker, records.pairs, records.seed, workers=records.workers)
 
 
-def _modal_combination_of_pairs(found: rf.PopulationStatistics) -> dict[str, float]:
-    """R² and slopes of Section 3.4, such as ``"r2, base_shear, SRSS"``, and the gain in R² by SRSS."""
-    rows = found.combination.to_dict("records")
-    values = {
-        f"{value}, {row['quantity']}, {row['estimate']}": float(row[value]) for row in rows for value in ("r2", "slope")
-    }
-    gains = {f"gain, {name}": values[f"r2, {name}, SRSS"] - values[f"r2, {name}, 2DOF-S"] for name in QUANTITIES}
-    return values | gains
-
-
-def _extremes_of_resting_pairs(pairs: "pd.DataFrame") -> dict[str, float]:
-    """Return extremes of the pairs in which MDOF-S does not uplift; NaN where there are none."""
-    resting = pairs[pairs["status_mdof"] == "no_uplift"]
-    if resting.empty:
-        names = ("largest rotation of 2DOF-S", "stories, least of the worst", "aspect ratio of the largest")
-        return dict.fromkeys(names, math.nan)
-    miss = (resting["max_top_displacement_mdof"] - resting["max_top_displacement_2dof"]).abs()
-    worst = resting.loc[miss.nlargest(N_LARGEST).index]
-    tall = resting.nlargest(N_LARGEST, "max_top_displacement_mdof")
-    return {
-        "largest rotation of 2DOF-S": float(resting["max_rotation_2dof"].max()),
-        "stories, least of the worst": float(worst["n_stories"].min()),
-        "aspect ratio of the largest": float(tall["aspect_ratio"].median()),
-    }
-
-
-def _outlying_pairs(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
-    """Return properties of the rocking pairs with the largest differences in rotation."""
-    few = found.outliers[found.outliers["share"].notna()].head(N_LARGEST)  # none, if all overturned
-    return {
-        "aspect ratio of outliers": float(few["aspect_ratio"].astype(float).median()),
-        "stories of outliers": float(few["n_stories"].astype(float).median()),
-        "period of outliers": float(few["period"].astype(float).median() / pairs["period"].median()),
-    }
-
-
-@lru_cache(maxsize=1)
 def population_pool(records: PaperRecords) -> "pd.DataFrame":
-    """Run populations of a thousand random structures, each with MDOF-S and 2DOF-S under a record drawn for it."""
+    """Return the pairs of all populations under the records as they are."""
     import pandas as pd
 
-    seeds = range(records.seed, records.seed + records.seeds)
-    return pd.concat([rf.run_population(records.suite, PAIRS, seed) for seed in seeds], ignore_index=True)
+    every = [piece.table(records) for piece in population_pieces(records)[: records.seeds]]
+    return pd.concat(every, ignore_index=True)
 
 
 def first_thousand_pairs(records: PaperRecords) -> "pd.DataFrame":
-    """Return the first thousand pairs, which the figures show."""
-    return population_pool(records).iloc[:PAIRS]
+    """Return the pairs of the first population, which the figures show."""
+    (piece,) = first_population_piece(records)
+    return piece.table(records)
+
+
+@lru_cache(maxsize=1)
+def _pool_measures(records: PaperRecords) -> PairMeasures:
+    return PairMeasures(population_pool(records))
 
 
 @lru_cache(maxsize=1)
@@ -183,12 +135,9 @@ def population_intervals(records: PaperRecords) -> dict[str, ResampledInterval]:
 
     A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
     """
-    pairs, generator = population_pool(records), np.random.default_rng(records.seed)
+    measures, generator = _pool_measures(records), np.random.default_rng(records.seed)
     drawn = [
-        population_measures(
-            pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True)
-        )
-        for _ in range(DRAWS)
+        measures.of(np.sort(generator.choice(records.pool_size, records.pairs, replace=False))) for _ in range(DRAWS)
     ]
     found: dict[str, ResampledInterval] = {}
     for name in drawn[0]:
@@ -203,7 +152,8 @@ def population_intervals(records: PaperRecords) -> dict[str, ResampledInterval]:
 
 def measures_under_weaker_records(records: PaperRecords, rows: Mapping[str, tuple[str, str]]) -> Remark:
     """Compare some measures, with their printed values, for unscaled and for weaker records."""
-    as_they_are, weaker = population_intervals(records), population_measures(_pairs_under_weaker_records(records))
+    as_they_are, pairs = population_intervals(records), population_pieces(records)[-1].table(records)
+    weaker = PairMeasures(pairs).of(np.arange(len(pairs)))
     return Remark(
         RemarkKind.AFTERWARDS,
         f"All records times {FACTOR}",
@@ -216,13 +166,6 @@ def measures_under_weaker_records(records: PaperRecords, rows: Mapping[str, tupl
             for key, (name, printed) in rows.items()
         ],
     )
-
-
-@lru_cache(maxsize=1)
-def _pairs_under_weaker_records(records: PaperRecords) -> "pd.DataFrame":
-    """Return the measures of the first thousand structures of the population under weaker records."""
-    suite = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
-    return rf.run_population(suite, PAIRS, records.seed)
 
 
 def figure_8(records: PaperRecords) -> ReproducedResult:
@@ -259,7 +202,7 @@ def figure_9(records: PaperRecords) -> ReproducedResult:
     ]
     note = (
         "A thousand pairs; R² and slopes exclude pairs in which a model overturns. Our value is the median, with the "
-        f"90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs (seeds {records.seed} to "
+        f"90 % interval, of {DRAWS} draws of a thousand from {records.pool_size} pairs (seeds {records.seed} to "
         f"{records.seed + records.seeds - 1}). All draws use the same records, so the intervals do not include the "
         "effect of other records. The figure shows the first thousand."
     )
@@ -272,8 +215,8 @@ def figure_9(records: PaperRecords) -> ReproducedResult:
 
 def _measures_by_seed(records: PaperRecords) -> Remark:
     """Show the result of each seed by itself."""
-    pairs = population_pool(records)
-    found = [population_measures(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
+    each = range(0, records.pool_size, records.pairs)
+    found = [_pool_measures(records).of(np.arange(first, first + records.pairs)) for first in each]
     rows: list[tuple[str, ...]] = []
     for key, (name, _, printed) in AGREEMENT.items():
         values = [each[key] for each in found]
@@ -307,7 +250,7 @@ def figure_13(records: PaperRecords) -> ReproducedResult:
     )  # fmt: skip
     note = (
         "R² refers to the line of equality, as in the paper; the blue line is y = c_1 x. Our value is the median, with "
-        f"the 90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
+        f"the 90 % interval, of {DRAWS} draws of a thousand from {records.pool_size} pairs, as for Figure 9."
     )
     return ReproducedResult(
         "figure-13", FIGURE_13, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,

@@ -396,6 +396,15 @@ class StudyFolder:
             self._known[place] = schema
         return path
 
+    def part(self, number: SupportsIndex) -> "pa.Table | None":
+        """Return the table of one chunk; None if it is absent or damaged."""
+        place = checked_whole_number("number", number, 0, self.n_chunks - 1)
+        path = self._part(place)
+        try:
+            return part_at(path, self.manifest.study, place).read() if path.exists() else None
+        except (PartError, OSError):
+            return None
+
     def table(self, *, partial: bool = False) -> "pa.Table":
         """Return all parts as one table, in the order of the chunks.
 

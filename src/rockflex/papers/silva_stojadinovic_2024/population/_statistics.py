@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, SupportsIndex
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_in_range, checked_whole_number
@@ -96,6 +97,35 @@ def slope_and_r2(x: Array, y: Array) -> tuple[float, float]:
     return slope, r2
 
 
+class PairTerms(NamedTuple):
+    """The terms of every comparison of `population_statistics`, one row per pair, which add up to slope and R².
+
+    So the comparisons of many samples of the same pairs need sums only. `names` has group, quantity, behaviour and
+    estimate of each comparison.
+    """
+
+    names: list[tuple[str, str, str, str]]
+    terms: Array
+
+    @classmethod
+    def of(cls, pairs: "pd.DataFrame") -> "PairTerms":
+        """Compute the terms, which are zero where a pair does not belong to a comparison."""
+        groups = outcome_groups(pairs)
+        resting, rocking = (pairs.index.isin(group.index) for group in (groups.resting, groups.rocking))
+        compared = [
+            *_agreement_comparisons("no_uplift", pairs, ("top_displacement",), resting),
+            *_agreement_comparisons("rocking", pairs, ("top_displacement", "rotation"), rocking),
+            *_combination_comparisons(pairs, rocking),
+        ]
+        names = [(each.group, each.quantity, each.behaviour, each.estimate) for each in compared]
+        return cls(names, np.column_stack([_regression_terms(each.x, each.y, each.kept) for each in compared]))
+
+    def slopes_and_r2(self, chosen: NDArray[np.intp]) -> Array:
+        """Return c1 and R² of each comparison over the chosen rows, one row per comparison; NaN for too few pairs."""
+        sums = self.terms[chosen].sum(axis=0).reshape(-1, N_SUMS)
+        return np.where(sums[:, -1:] < MIN_PAIRS, np.nan, _slopes_and_r2(sums))
+
+
 @dataclass(frozen=True, eq=False)
 class _PopulationComparison:
     group: str
@@ -182,20 +212,25 @@ def population_statistics(
 
 
 def _agreement_comparisons(
-    group: str, frame: "pd.DataFrame", quantities: tuple[str, ...]
+    group: str, frame: "pd.DataFrame", quantities: tuple[str, ...], members: Bools | None = None
 ) -> list[_PopulationComparison]:
-    everything = np.ones(len(frame), dtype=bool)
+    """Compare the models; `members` are the rows of the group, by default all."""
+    everything = np.ones(len(frame), dtype=bool) if members is None else members
     shear = (frame["behaviour"] == "shear").to_numpy(dtype=bool)
     found: list[_PopulationComparison] = []
     for quantity in quantities:
         x, y = (frame[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
-        for behaviour, kept in (("all", everything), ("shear", shear), ("flexure", ~shear)):
+        for behaviour, kept in (
+            ("all", everything),
+            ("shear", everything & shear),
+            ("flexure", everything & ~shear),
+        ):
             found.append(_PopulationComparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
     return found
 
 
-def _combination_comparisons(frame: "pd.DataFrame") -> list[_PopulationComparison]:
-    everything = np.ones(len(frame), dtype=bool)
+def _combination_comparisons(frame: "pd.DataFrame", members: Bools | None = None) -> list[_PopulationComparison]:
+    everything = np.ones(len(frame), dtype=bool) if members is None else members
     found: list[_PopulationComparison] = []
 
     def compare(quantity: str, estimate: str, x: str, y: str, unit: Array) -> None:
@@ -255,7 +290,8 @@ def _regression_terms(x: Array, y: Array, kept: Bools | None = None) -> Array:
     """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
     among = np.ones(x.size, dtype=bool) if kept is None else kept
     away = y - (float(y[among].mean()) if among.any() else 0.0)
-    return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * among[:, None]
+    terms = np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x)))
+    return np.where(among[:, None], terms, 0.0)  # NaN where a pair was not solved
 
 
 def _slopes_and_r2(sums: Array) -> Array:
