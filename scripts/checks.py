@@ -71,14 +71,12 @@ def main() -> int:
     for name in given.names:
         command, seconds = CHECKS[name]
         left = None if given.minutes is None else 60.0 * given.minutes - (time.time() - given.since)
-        if left is not None and left < SPREAD * unit * seconds:
-            ended[name] = f"left out: it takes up to {SPREAD * unit * seconds:.0f} s, and {max(left, 0.0):.0f} s are left"
+        if left is not None and left < (most := SPREAD * unit * seconds):
+            ended[name] = f"left out: it takes up to {most:.0f} s, and {max(left, 0.0):.0f} s are left"
             continue
         print(f"\n=== {name}", flush=True)
         start = time.monotonic()
-        done = subprocess.run(
-            command.format(workers=given.workers), shell=True, cwd=ROOT, env=environment, check=False
-        )
+        done = subprocess.run(command.format(workers=given.workers), shell=True, cwd=ROOT, env=environment, check=False)
         ended[name] = f"{'failed' if done.returncode else 'passed'} in {time.monotonic() - start:.0f} s"
     print("\n" + "\n".join(f"{name:10} {how}" for name, how in ended.items()), flush=True)
     return any(how.startswith("failed") for how in ended.values())
