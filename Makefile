@@ -13,8 +13,10 @@ LOWEST := $(VENV)-lowest
 NEWEST := $(VENV)-newest
 # Python compiles a module at its first import; pip would compile thousands that are never imported.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+# It fetches several libraries at once, and meanwhile compiles; where it cannot be had, or has no index, pip does it.
+UV := $(BIN)/uv pip install --quiet --python $(BIN)/python
 # The engine is compiled by the tools in .venv, which also compile it anew at the next import after a change.
-EDITABLE := $(INSTALL) --no-build-isolation --editable
+EDITABLE := $$(test -x $(BIN)/uv && echo $(UV) || echo $(INSTALL)) --no-build-isolation --editable
 TOOLS := 'meson-python>=0.18' 'cython>=3.1' ninja
 export PATH := $(abspath $(BIN)):$(PATH)
 ifeq ($(shell command -v cc || command -v gcc || command -v clang),)
@@ -37,12 +39,16 @@ help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
 
 $(INSTALLED): pyproject.toml meson.build src/rockflex/engine/meson.build
-	$(PYTHON) -m venv $(VENV)
-	@test -f "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" || \
+	@echo 'Setting up rockflex in $(VENV), once. 1 of 3: creating it'
+	@test -f "$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" || \
 		{ echo 'Python.h is missing. Install the headers of Python (Debian: python3-dev).' >&2; exit 1; }
+	@$(PYTHON) -m venv $(VENV)
+	@echo '2 of 3: fetching the tools that install and compile'
 	$(if $(filter ziglang,$(TOOLS)),@echo 'There is no C compiler: fetching that of the package ziglang (some 90 MB).')
-	$(INSTALL) $(TOOLS)
-	$(EDITABLE) .
+	@$(INSTALL) uv && $(UV) $(TOOLS) || rm -f $(BIN)/uv
+	@test -x $(BIN)/uv || $(INSTALL) $(TOOLS)
+	@echo '3 of 3: compiling the engine, some 20 to 60 s, while NumPy, SciPy, pandas, matplotlib and others are fetched'
+	@$(EDITABLE) .
 	@touch $(INSTALLED)
 
 $(READY): $(INSTALLED)
@@ -50,7 +56,8 @@ $(READY): $(INSTALLED)
 	@touch $(READY)
 
 demo: $(INSTALLED)  ## structure #1 of Table 1 under two records; figures under out/demo
-	$(BIN)/python examples/demo.py
+	@echo 'A frame of five stories under two earthquakes: python examples/demo.py'
+	@$(BIN)/python examples/demo.py
 
 figures: $(INSTALLED)  ## every table and figure of the paper, with a report; in out/paper
 	$(BIN)/rockflex reproduce --out out/paper --force

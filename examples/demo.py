@@ -55,9 +55,10 @@ def main() -> None:
         responses = [rf.simulate(frame, motion, model) for model in MODELS]
         figures[f"history-{motion.name}"] = plot_history(responses)
         figures[f"moment-rotation-{motion.name}"] = plot_moment_rotation(responses[1:])
+    print(f"\nwriting {len(figures)} figures ...", flush=True)
     for name, figure in figures.items():
         save_figure(figure, OUT / f"{name}.png")
-    print(f"\n{len(figures)} figures written to {OUT.resolve()}")
+    print(f"they are in {OUT.resolve()}")
 
 
 if __name__ == "__main__":
