@@ -66,15 +66,14 @@ def document():
         ),
         report.ReproducedResult("table-1", "Second"),
     ]
+    sections = [section.finished() for section in sections]
     return report.PublicationReport("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
 
 
 @pytest.fixture(scope="module")
 def folder(document, tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
-    drawn = []
-    files = report.write_publication_report(document, out, drawn.append)
-    assert drawn == ["figure-3", "figure-3-spread"]
+    files = report.write_publication_report(document, out)
     assert [file.name for file in files] == [
         "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",
     ]  # fmt: skip
@@ -122,17 +121,48 @@ def test_checks_and_remarks_are_shown_and_not_counted(folder, document):
     assert "T_1 &" not in (folder / "numbers.csv").read_text("utf-8")
 
 
-def test_remarks_are_computed_once_and_when_they_are_asked_for(document):
+def test_a_result_is_drawn_once_and_when_it_is_finished(document):
     assert computed == [1]  # for the page and the Markdown together
     before = report.ReproducedResult("figure-3", "First", remarking=(remark,))
     assert computed == [1]
-    assert before.remarks is before.remarks
+    assert before.finished().remarks[0].rows == [("51.33", "yes")]
+    assert computed == [1, 1]
+    assert before.finished(whole=False).remarks == ()
     assert computed == [1, 1]
 
 
+def test_a_finished_result_is_stored_without_loss(document):
+    first = document.sections[0]
+    again = report.FinishedResult.from_json(first.to_json())
+    assert again.to_json() == first.to_json()
+    assert again.drawings == first.drawings
+    assert [line.ours for line in again.numbers] == [line.ours for line in NUMBERS]  # an infinite one, too
+    for write in (report.report_to_html, report.report_to_markdown, report.report_numbers_to_csv):
+        stored = [report.FinishedResult.from_json(section.to_json()) for section in document.sections]
+        assert write(replace(document, sections=stored)) == write(document)
+
+
+def test_a_report_says_what_it_lacks(folder, document):
+    part = replace(document, missing=["figure-9", "sliding"])
+    for whole, text in (
+        ((folder / "report.html").read_text("utf-8"), report.report_to_html(part)),
+        ((folder / "report.md").read_text("utf-8"), report.report_to_markdown(part)),
+    ):
+        assert "figure-9, sliding" in text
+        assert "figure-9" not in whole
+        assert "Unfinished" not in whole
+    check_page(report.report_to_html(part), 2)
+
+
+def test_figures_that_are_there_are_not_written_again(document, tmp_path):
+    files = report.write_publication_report(document, tmp_path, only="table-1")
+    assert [file.name for file in files if not file.exists()] == ["figure-3.svg", "figure-3-spread.svg"]
+    check_page((tmp_path / "report.html").read_text("utf-8"), 2)
+
+
 def test_a_page_without_failures_has_no_list_of_them(document):
-    fine = replace(document, sections=[report.ReproducedResult("table-1", "Second", NUMBERS[:1])])
-    text = report.report_to_html(fine, {})
+    fine = replace(document, sections=[report.FinishedResult("table-1", "Second", NUMBERS[:1])])
+    text = report.report_to_html(fine)
     check_page(text, 0)
     assert 'id="failing"' not in text
     assert "Checks of ourselves, not counted" not in text

@@ -14,7 +14,7 @@ from rockflex.cli import _output as output
 from rockflex.study.progress import duration_text, progress_bar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Generator, Sequence
 
     from rockflex.cli._reproduction import Done, Job
     from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
@@ -33,6 +33,8 @@ rockflex reproduce figure-5 figure-9 --records peer --out mine
 
 Quick targets come first. Each one is in the report as soon as it is done; after Ctrl-C the same line goes on. The
 report starts with the meaning of each verdict."""
+
+MIN_KNOWN_SHARE = 0.05  # of the work, after which the time left can be told
 
 TITLE = "Silva & Stojadinović (2024), reproduced"
 SOURCE = (
@@ -90,8 +92,7 @@ def reproduce(
 
     for target in targets or ():
         paper.target_title(target)
-    chosen = {name: value for name, value in (("seeds", seeds), ("seed", seed)) if value is not None}
-    given = paper.PaperRecords(records, **chosen)
+    given = paper.PaperRecords(records, paper.SEEDS if seeds is None else seeds, paper.SEED if seed is None else seed)
     console.print_remark(given.description)
     if out is None:
         output.check_output_folder(out, force=force)
@@ -117,7 +118,7 @@ def _reproduce_targets(wanted: set[str], records: "PaperRecords", out: Path | No
             console.print_remark(f"{number_with_noun(len(results), 'target')}{pieces} are already in {out}")
         if out is not None:
             _write_reproduction(results, missing, records, out)
-        jobs = planned_jobs(missing, records)
+        jobs = planned_jobs(missing, records, whole=out is not None)
         try:
             with (
                 _job_progress(jobs) as progress,
@@ -150,25 +151,37 @@ class _JobProgress:
 
     def __init__(self, total: float, show: "Show") -> None:
         self._total, self._show, self._done = total, show, 0.0
-        self._start = perf_counter()
+        self._first: tuple[float, float] | None = None
 
     def running(self, jobs: "Sequence[Job]") -> None:
         """Show what runs."""
-        self._show(100.0 * self._done / self._total, 100.0, ", ".join(job.title for job in jobs))
+        done = self._done if self._left() is not None else 0.0
+        self._show(100.0 * done / self._total, 100.0, ", ".join(job.title for job in jobs))
 
     def add(self, done: "Done") -> None:
         """Count a job."""
         self._done += done.job.cost
+        if self._first is None:  # what was before is mostly the start of processes
+            self._first = perf_counter(), self._done
 
     def line(self, done: "Done") -> str:
         """Return the line about a target that is done."""
+        left = self._left()
         text = f"{done.job.title}: {duration_text(done.seconds)}; {100.0 * self._done / self._total:.0f} % done"
-        left = (perf_counter() - self._start) * (self._total - self._done) / self._done
-        return f"{text}, about {duration_text(left)} left" if self._done < self._total else text
+        return text if left is None else f"{text}, about {duration_text(left)} left"
+
+    def _left(self) -> float | None:
+        """Return the time left in s, once enough is done to tell."""
+        if self._first is None or not MIN_KNOWN_SHARE * self._total <= self._done < self._total:
+            return None
+        start, done = self._first
+        if self._done <= done:
+            return None
+        return (perf_counter() - start) * (self._total - self._done) / (self._done - done)
 
 
 @contextmanager
-def _job_progress(jobs: "Sequence[Job]") -> "Iterator[_JobProgress]":
+def _job_progress(jobs: "Sequence[Job]") -> "Generator[_JobProgress]":
     with progress_bar("Reproducing, %", transient=True) as show:
         yield _JobProgress(sum(job.cost for job in jobs), show)
 

@@ -102,8 +102,10 @@ class ReproducedResult:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         object.__setattr__(self, "figures", MappingProxyType(dict(self.figures)))
 
-    def finished(self) -> "FinishedResult":
-        """Compute the remarks, and draw the figures."""
+    def finished(self, *, whole: bool = True) -> "FinishedResult":
+        """Compute the remarks, and draw the figures; without either unless it is to be `whole`."""
+        if not whole:
+            return FinishedResult(self.name, self.title, self.numbers, note=self.note, checks=self.checks)
         from rockflex.plot import figure_as_svg
 
         remarks = tuple(remark() for remark in self.remarking)

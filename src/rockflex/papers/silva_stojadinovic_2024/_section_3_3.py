@@ -1,6 +1,6 @@
 """Sections 3.3 and 3.4, Figures 8, 9 and 13: random pairs of a structure and a record."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
@@ -131,19 +131,24 @@ def _pool_measures(records: PaperRecords) -> PairMeasures:
 
 @lru_cache(maxsize=1)
 def population_intervals(records: PaperRecords) -> dict[str, ResampledInterval]:
-    """Return the median of each `measure` over draws of a thousand pairs, and its 5 and 95 % quantiles.
-
-    A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
-    """
+    """Return the interval of each measure over draws of a thousand pairs of all populations."""
     measures, generator = _pool_measures(records), np.random.default_rng(records.seed)
     drawn = [
         measures.of(np.sort(generator.choice(records.pool_size, records.pairs, replace=False))) for _ in range(DRAWS)
     ]
+    return intervals_of_measures(drawn)
+
+
+def intervals_of_measures(drawn: Sequence[Mapping[str, float]]) -> dict[str, ResampledInterval]:
+    """Return the median of each measure over some draws, and its 5 and 95 % quantiles.
+
+    A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
+    """
     found: dict[str, ResampledInterval] = {}
     for name in drawn[0]:
         values = np.array([each[name] for each in drawn])
         known = values[~np.isnan(values)]
-        enough = known.size >= MIN_KNOWN_SHARE * DRAWS
+        enough = known.size >= MIN_KNOWN_SHARE * len(drawn)
         # Quantiles are values that occur, so that counts remain integers.
         quantiles = np.quantile(known, (0.5, 0.05, 0.95), method="inverted_cdf") if enough else np.full(3, np.nan)
         found[name] = ResampledInterval(*quantiles.tolist())
