@@ -260,11 +260,11 @@ class Visitor:
         return self.page.evaluate("rockflexPage.state")
 
     def settle(self) -> None:
-        """Wait until every answer is there and shown: for three frames nothing is awaited."""
+        """Wait until every answer is there and shown: for three pictures nothing is awaited, and no study runs."""
         self.page.evaluate(
             """async () => {
               for (let still = 0; still < 3; await new Promise(requestAnimationFrame))
-                still = pendingAnswers || document.querySelector(".wait") ? 0 : still + 1;
+                still = pendingAnswers || document.querySelector(".wait, #cancel:enabled") ? 0 : still + 1;
             }"""
         )
 
