@@ -75,7 +75,7 @@ def test(python: str, wheel: Path, work: Path) -> None:
     run(inside, "-c", FIRST_RUN, **elsewhere)
     run(inside.parent / "rockflex", "--help", stdout=subprocess.DEVNULL, **elsewhere)
     run(inside, "-m", "ensurepip", stdout=subprocess.DEVNULL)
-    run(inside, *PIP, "install", "pytest", "hypothesis", "cython")
+    run(inside, *PIP, "install", "pytest", "hypothesis", "cython", "mpmath")
     run(inside, "-m", "pytest", "-q", "-p", "no:cacheprovider", ROOT / "tests" / "engine", **elsewhere)
 
 
