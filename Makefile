@@ -52,7 +52,8 @@ $(INSTALLED): pyproject.toml meson.build src/rockflex/engine/meson.build
 	@touch $(INSTALLED)
 
 $(READY): $(INSTALLED)
-	$(EDITABLE) '.[dev]'
+	@echo 'Fetching the tools of the tests'
+	@$(EDITABLE) '.[dev]'
 	@touch $(READY)
 
 demo: $(INSTALLED)  ## structure #1 of Table 1 under two records; figures under out/demo

@@ -472,7 +472,7 @@ def served(*command: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    # A shell lets what it starts in the background, such as these tests, ignore Ctrl-C; the server must not inherit that.
+    # A shell lets what it starts in the background ignore Ctrl-C; the server must not inherit that.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     with subprocess.Popen([*command, "--port", str(port)], stderr=subprocess.PIPE, text=True) as process:
         signal.signal(signal.SIGINT, before)
