@@ -168,7 +168,6 @@ WEAKLY_DAMPED = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("structure", "models", "free", "said"),
     [
@@ -382,7 +381,6 @@ def test_half_a_character_in_a_name_is_refused(client, endpoint) -> None:
     assert client.post(f"/api/{endpoint}", text.encode())[0] == 422
 
 
-@pytest.mark.slow
 def test_a_nested_focus_is_no_error(client) -> None:
     state = json.dumps({"state": client.state(models=["2DOF-S"], free_vibration=0.0)})
     for depth in range(900, 1000, 5):
@@ -478,7 +476,7 @@ def served(*command: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    # A shell lets what it starts in the background, such as these tests, ignore Ctrl-C; the server must not inherit that.
+    # A shell lets what it starts in the background, such as these tests, ignore Ctrl-C. The server must not do so.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     with subprocess.Popen([*command, "--port", str(port)], stderr=subprocess.PIPE, text=True) as process:
         signal.signal(signal.SIGINT, before)
