@@ -262,7 +262,6 @@ def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> N
     assert visitor.state()["record"]["given"] == "alone"
 
 
-@pytest.mark.slow
 def test_a_lost_folder_is_told_on_other_tabs_in_words(visit, link, client) -> None:
     visitor = visit(link(client.state(tab="response", record={"source": "folder"})))
     foot = visitor.page.locator(".foot:visible").filter(has_text="Earthquake")

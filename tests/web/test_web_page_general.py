@@ -41,6 +41,7 @@ def test_downloads_of_each_tab(visit, client, link, monkeypatch) -> None:
             assert got.value.path().stat().st_size > 50
             ending = got.value.suggested_filename.rsplit(".")[-1]
             assert ending in ("svg", "html", "pdf", "csv", "toml", "py", "gif", "rockflex")
+            assert (ending == "svg") == (what == "figure")
     assert {("", what) for what in ("report", "animation", "record", "cloud-study", "design-python")} <= made
     assert {(tab, "figure") for tab in ("response", "fragility", "design")} <= made
 
@@ -80,6 +81,7 @@ def test_a_damaged_link_is_told(visit, link) -> None:
         if text is None:
             assert banner.is_hidden()
         else:
+            assert banner.is_visible()
             assert "The link cannot be opened" in banner.inner_text()
             assert text in banner.inner_text()
         visitor.page.wait_for_selector("#adequacy")

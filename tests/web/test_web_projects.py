@@ -191,7 +191,6 @@ def repacked(content: bytes, changed: dict[str, bytes | str]) -> bytes:
     return packed.getvalue()
 
 
-@pytest.mark.slow
 def test_a_file_of_a_stranger_takes_no_memory_and_no_time(client, tmp_path) -> None:
     good = project_file(tmp_path, {"a": FRAME}, PULSE, "MDOF-S")
     frame = "structures/001_a.toml"

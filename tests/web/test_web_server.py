@@ -168,7 +168,6 @@ WEAKLY_DAMPED = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("structure", "models", "free", "said"),
     [
@@ -376,7 +375,6 @@ def test_half_a_character_in_a_name_is_refused(client, endpoint) -> None:
     assert client.post(f"/api/{endpoint}", text.encode())[0] == 422
 
 
-@pytest.mark.slow
 def test_a_nested_focus_is_no_error(client) -> None:
     state = json.dumps({"state": client.state(models=["2DOF-S"], free_vibration=0.0)})
     for depth in range(900, 1000, 5):

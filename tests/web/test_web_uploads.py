@@ -360,7 +360,6 @@ def folder(tmp_path_factory):
     return place
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("archive", [False, True])
 def test_a_folder_is_what_the_library_surveys(client, folder, archive) -> None:
     status, found = give(client, body_of({"records.zip": zipped(GIVEN)} if archive else GIVEN))
@@ -453,7 +452,6 @@ def test_names_that_point_out_of_the_folder_are_refused(name) -> None:
         assert "points out of its folder" in refusal(unpacked_record_files, body)
 
 
-@pytest.mark.slow
 def test_archives_that_grow_are_refused() -> None:
     zeros = b"0\n" * (MAX_FILE_BYTES // 2 - 10)
     bomb = zipped({f"{i}.txt": zeros for i in range(MAX_FOLDER_BYTES // len(zeros) + 1)})
