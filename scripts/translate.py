@@ -14,12 +14,10 @@ from Cython.Compiler import Main
 folder, shared, *rest = sys.argv[1:]
 with tempfile.TemporaryDirectory(dir=folder) as made:
     own = Path(made, shared.rpartition(".")[2] + ".c")
-    for arguments in (
-        [*rest, "--shared", shared, "-o", made],
-        ["--generate-shared", str(own), "--module-name", shared],
-    ):
-        sys.argv[1:] = arguments
-        Main.setuptools_main()
+    sys.argv[1:] = [*rest, "--shared", shared, "-o", made]
+    Main.setuptools_main()
+    sys.argv[1:] = ["--generate-shared", str(own), "--module-name", shared]
+    Main.setuptools_main()
     for each in Path(made).glob("*.c"):  # what has not changed keeps its time, and is not compiled again
         if not Path(folder, each.name).exists() or not filecmp.cmp(each, Path(folder, each.name), shallow=False):
             each.replace(Path(folder, each.name))

@@ -28,6 +28,18 @@ def test_running_needs_no_test_tools(tmp_path):
         assert install.endswith("--editable .")
 
 
+def test_each_step_of_the_first_call_is_told(tmp_path):
+    done = subprocess.run(
+        ["make", "--dry-run", "demo", f"VENV={tmp_path / 'none'}"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("echo ")
+    told = [k for k, line in enumerate(lines) if line.startswith("echo ")]
+    for before, step in zip(told, ("-m venv", " uv &&", "--editable", "demo.py"), strict=True):
+        following = next((k for k in told if k > before), len(lines))
+        assert any(step in line for line in lines[before + 1 : following])
+
+
 def test_testing_adds_its_tools_to_the_same_environment(tmp_path):
     first, second = commands("test", tmp_path)
     assert first.endswith("--editable .")
