@@ -1,5 +1,6 @@
 """What the targets of the Makefile install."""
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -14,12 +15,15 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+def planned(target, folder, path=os.environ["PATH"]):
+    """The lines that a target would run from a clean clone, also if make runs these tests."""
+    command = [shutil.which("make"), "--dry-run", target, f"VENV={folder / 'none'}"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, env={"PATH": path})
+    return done.stdout.splitlines()
+
+
 def commands(target, folder):
-    """The commands that a target would run from a clean clone."""
-    done = subprocess.run(
-        ["make", "--dry-run", target, f"VENV={folder / 'none'}"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    return [line for line in done.stdout.splitlines() if "--editable" in line]
+    return [line for line in planned(target, folder) if "--editable" in line]
 
 
 def test_running_needs_no_test_tools(tmp_path):
@@ -29,10 +33,7 @@ def test_running_needs_no_test_tools(tmp_path):
 
 
 def test_each_step_of_the_first_call_is_told(tmp_path):
-    done = subprocess.run(
-        ["make", "--dry-run", "demo", f"VENV={tmp_path / 'none'}"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    lines = done.stdout.splitlines()
+    lines = planned("demo", tmp_path)
     assert lines[0].startswith("echo ")
     told = [k for k, line in enumerate(lines) if line.startswith("echo ")]
     for before, step in zip(told, ("-m venv", " uv &&", "--editable", "demo.py"), strict=True):
@@ -51,19 +52,12 @@ def test_without_a_compiler_that_of_a_package_is_fetched(tmp_path):
     tools.mkdir()
     for name in ("make", "sh"):
         (tools / name).symlink_to(str(shutil.which(name)))
-    done = subprocess.run(
-        [shutil.which("make"), "--dry-run", "demo", f"VENV={tmp_path / 'none'}"],
-        cwd=ROOT, capture_output=True, text=True, check=True, env={"PATH": str(tools)},
-    )  # fmt: skip
-    assert any("pip install" in line and line.endswith(" ziglang") for line in done.stdout.splitlines())
+    lines = planned("demo", tmp_path, str(tools))
+    assert any("pip install" in line and line.endswith(" ziglang") for line in lines)
 
 
 def test_validation_keeps_what_other_programs_need_apart(tmp_path):
-    done = subprocess.run(
-        ["make", "--dry-run", "validate", f"VENV={tmp_path / 'none'}"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    lines = done.stdout.splitlines()
+    lines = planned("validate", tmp_path)
     lean = [line for line in lines if "pip install" in line and "none-risk" in line]
     assert [line.split(maxsplit=6)[-1] for line in lean] == [
         "--no-compile '.[risk]'",
