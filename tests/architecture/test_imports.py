@@ -365,6 +365,7 @@ def test_a_first_run_loads_no_heavy_library():
     assert not {"scipy", "pandas", "pyarrow", "pydantic", "matplotlib", "typer", "jinja2"} & {*loaded}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "work",
     [

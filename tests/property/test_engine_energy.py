@@ -14,6 +14,7 @@ settings_ = settings(max_examples=60, deadline=None)
 frames = frame_arguments(8, 2.5)
 
 
+@pytest.mark.slow
 @settings_
 @given(frames, st.floats(0.02, 0.95), st.booleans(), st.data())
 def test_free_and_undamped(given_, fraction, left, data):

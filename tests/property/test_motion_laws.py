@@ -43,6 +43,7 @@ def test_refining_changes_no_measure(motion, k):
     assert fine.cav == pytest.approx(motion.cav, rel=1e-12)
 
 
+@pytest.mark.slow
 @given(moving, st.integers(2, 5))
 def test_refining_changes_no_duration(motion, k):
     # A quiet stretch exactly at a fraction of the energy would make the crossing a matter of rounding.

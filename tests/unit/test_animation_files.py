@@ -80,6 +80,7 @@ def test_sizes_are_even(response, tmp_path, width, wide):
     reader.close()
 
 
+@pytest.mark.slow
 def test_an_existing_file_is_replaced_and_nothing_else_is_left(response, tmp_path):
     file = tmp_path / "run.gif"
     file.write_bytes(b"old")

@@ -72,6 +72,7 @@ def test_document_says_what_was_run():
     assert found["options"] == {"models": ["fixed"], "scales": [1.0], "free_vibration": 0.0}
 
 
+@pytest.mark.slow
 def test_flags_and_options_in_the_place_of_arguments():
     by_file = document(STRUCTURE, "el-centro-1940", "--model", "MDOF-S")["runs"][0]
     by_flags = document(*FLAGS, "--motion", "el-centro-1940", "--model", "MDOF-S")["runs"][0]

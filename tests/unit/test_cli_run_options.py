@@ -88,6 +88,7 @@ def test_models_that_end_in_bw_yield_and_the_others_do_not():
     assert found["options"]["bouc_wen"] == expected
 
 
+@pytest.mark.slow
 def test_shape_of_the_hysteresis():
     row = document(STRUCTURE, RECORD, *YIELDING, "--bw-gamma", 0.7, "--bw-beta", 0.3, "--model", "2DOF-S-BW")["runs"][0]
     assert_is_run(row, "2DOF-S-BW", bouc_wen=rf.BoucWen(0.05, gamma=0.7, beta=0.3))

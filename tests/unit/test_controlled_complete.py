@@ -172,6 +172,7 @@ def stored(element, memory):
     return energy((1.0 - a) * memory if slack else e, memory) - energy(e, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["fuses", "hardening", "tendon", "asymmetric", "dampers"])
 @pytest.mark.parametrize("model", ["4DOF-C-SI", "2DOF-S-BW"])
 def test_energy_balance(model, case):

@@ -125,6 +125,7 @@ def test_the_trade_off_is_that_of_the_law(law, slow):
         rf.trade_off(slow, "width")
 
 
+@pytest.mark.slow
 def test_the_limit_that_governs_is_the_one_whose_loss_makes_it_cheaper(law, both):
     found, (_, _, governs) = both, law.optimum(SEARCH, [SLOW, STRONG])
     limits = found.limits.set_index("limit")

@@ -129,6 +129,7 @@ def test_elements_change_nothing_without_stiffness():
     assert with_none.max_rotation == pytest.approx(plain.max_rotation, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-S", "MDOF-S"])
 def test_fuses_under_a_record_with_vertical_motion_and_friction(model):
     record = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(1.5)

@@ -62,6 +62,7 @@ def test_a_rigid_block_let_go_at_an_angle():
     assert run.vertical_reaction[0] == pytest.approx(support, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["2DOF-S", "2DOF-C", "MDOF-S", "1DOF-fixed", "fixed"])
 def test_a_slow_push_needs_its_acceleration_over_g(model):
     """Static limit: the masses follow the ground, so Σ m (a + u'') is m_tot a."""

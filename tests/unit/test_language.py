@@ -204,6 +204,7 @@ def test_figures_follow_the_language_the_units_and_the_sign():
     assert not any("," in text for text in labels_of(usual.axes[0]))
 
 
+@pytest.mark.slow
 def test_figures_of_motions_and_shapes_have_the_units_and_commas_in_mathematics():
     motion, inch = rf.ricker_pulse(4.0, 0.6), constants.inch
     with rf.figure_style(units="kip-in", language="de"):

@@ -53,6 +53,7 @@ def test_a_test_that_kills_its_worker_fails_once_and_all_others_run(reported):
     )
 
 
+@pytest.mark.slow
 def test_the_tests_of_a_file_and_those_of_the_page_stay_on_one_worker(reported):
     for start in ("test_b.py", "web/"):
         assert len({worker for test, _, worker in reported if test.startswith(start)}) == 1

@@ -72,6 +72,7 @@ def springs(draw):
     )
 
 
+@pytest.mark.slow
 @given(springs(), st.floats(-3.0, 3.0, allow_subnormal=False), st.floats(-1.3, 1.3))
 def test_the_rate_of_z_is_that_of_equation_38(spring, velocity, z):
     b = spring

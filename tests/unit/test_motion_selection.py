@@ -154,6 +154,7 @@ def test_one_record_of_an_earthquake_or_a_station():
     assert f"with per_event=1 and per_station=1 only {n_events} of 44 can be chosen" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_the_mean_reaches_the_target():
     plain = SUITE.select(TARGET, 7, RANGE)
     raised = SUITE.select(TARGET, 7, RANGE, least_ratio=1.1)

@@ -103,6 +103,7 @@ def test_limits_by_their_names_and_a_panel_a_model():
     assert drawn(rf.plot_design(designs(limit=math.pi / 2))).axes[0].get_ylabel() == "P(overturning)"
 
 
+@pytest.mark.slow
 def test_gaps_and_single_designs():
     table = designs().assign(low=np.nan, high=np.nan)
     table.loc[1, "probability"] = np.nan

@@ -67,6 +67,7 @@ def test_moment_rotation_keeps_labels_with_their_curves(responses):
     assert [to_hex(axes.get_lines()[0].get_color()) for axes in figure.axes] == ["#000000", "#d55e00"]
 
 
+@pytest.mark.slow
 def test_moment_rotation_has_three_panels_a_row(responses):
     figure = drawn(plot_moment_rotation([responses["2DOF-S"]] * 4))
     assert [axes.axison for axes in figure.axes] == [True] * 4 + [False] * 2

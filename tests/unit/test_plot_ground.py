@@ -38,6 +38,7 @@ def panel(figure, name):
     return next(axes for axes in figure.axes if axes.get_ylabel().startswith(name))
 
 
+@pytest.mark.slow
 def test_histories_show_slip_and_edges_where_the_ground_makes_them_matter(hops, slides, stands):
     def names(responses):
         return [axes.get_ylabel().split(" [")[0] for axes in rf.plot_history(responses).axes]
@@ -76,6 +77,7 @@ def test_a_base_on_springs_is_uplifted_while_an_edge_is_off_its_spring(hops, sta
     assert np.all(hops.history.uplifted[inside])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["hops", "slides"])
 def test_the_layers_of_energy_add_up(name, request):
     run = request.getfixturevalue(name)

@@ -359,6 +359,7 @@ def test_a_run_beyond_balance_from_the_start_is_shown_whole():
     assert panels[1].get_ylim()[1] > response.max_top_displacement
 
 
+@pytest.mark.slow
 def test_phases_open_at_both_ends_are_shaded(returned):
     initial = rf.InitialState(rotation=0.05)
     short = rf.simulate(FRAME, rf.quiet_motion(0.5), "2DOF-S", initial=initial)

@@ -148,6 +148,7 @@ def test_selection_of_one_record(periods):
     assert lower.get_ylim()[0] < 1.0 < lower.get_ylim()[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("measure", ["geometric mean", "rotd50", "rotd100"])
 def test_selection_of_pairs_names_the_measure(measure):
     named = rf.TargetSpectrum([0.01, 10.0], [5.0, 0.5], name="$my")

@@ -32,6 +32,7 @@ def test_population_bars_count_the_pairs(pairs):
 # Fig. 9
 
 
+@pytest.mark.slow
 def test_agreement_shows_every_pair_that_stands(pairs):
     figure = drawn(rf.plot_agreement(pairs))
     statistics = population_statistics(pairs, n_resamples=20).agreement

@@ -266,6 +266,7 @@ def test_ticks_keep_the_settings_when_the_figure_is_drawn_later(tmp_path):
     assert {label.get_fontsize() for axes in figure.axes for label in axes.get_yticklabels()} == {13.0}
 
 
+@pytest.mark.slow
 def test_lines_are_as_much_wider_as_those_of_the_caller():
     plain = [line.get_linewidth() for line in rf.plot_history(responses()).axes[0].get_lines()]
     with mpl.rc_context({"lines.linewidth": 3.0}):
@@ -318,6 +319,7 @@ def contrast(one, other):
     return high / low
 
 
+@pytest.mark.slow
 def test_a_block_of_a_style_and_a_size_of_one_figure():
     with rf.figure_style("journal", "column"):
         one, other = rf.plot_motion(PULSE), rf.plot_motion(PULSE, size="page")

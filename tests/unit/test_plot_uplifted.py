@@ -27,6 +27,7 @@ def named(axes, label):
     return [line for line in axes.get_lines() if line.get_label() == label]
 
 
+@pytest.mark.slow
 def test_a_curve_a_model_and_structure_in_a_panel_a_mode(tables):
     limits = {"shear": rf.pinned_beam("shear"), "bend$ing": rf.pinned_beam("flexure")}
     backwards = {

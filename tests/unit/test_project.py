@@ -361,6 +361,7 @@ def invoke(*words):
     return CliRunner().invoke(app, ["project", *map(str, words)])
 
 
+@pytest.mark.slow
 def test_the_command_makes_runs_reports_and_shows(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     block = "block = { slenderness = 0.2, half_diagonal = 3.0, mass = 50e3 }\n"

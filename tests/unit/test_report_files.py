@@ -126,6 +126,7 @@ def plain(text):
     return "".join(text.split()).replace("_", "").replace("^", "")
 
 
+@pytest.mark.slow
 def test_subscripts_and_superscripts_of_word(held, tmp_path):
     docx = pytest.importorskip("docx")
     document = docx.Document(rf.write_report(held, tmp_path / "r.docx", structure=HELD))

@@ -118,6 +118,7 @@ def computed(monkeypatch):
 FEW = ("figure-12", "table-1", "table-2", "figure-11")
 
 
+@pytest.mark.slow
 def test_what_is_done_is_kept_and_not_computed_again(tmp_path, computed):
     out, whole = tmp_path / "paper", tmp_path / "whole"
     computed.stopped.append("figure-11")

@@ -47,6 +47,7 @@ def test_a_second_opening_is_refused_and_reading_is_not(tmp_path: Path) -> None:
         second.write(1, PLAN.chunk(1))
 
 
+@pytest.mark.slow
 def test_the_lock_goes_with_its_object(tmp_path: Path) -> None:
     study = opened(str(tmp_path), PLAN)
     assert (tmp_path / "lock").exists()

@@ -361,6 +361,7 @@ def test_work_limits_count():
         rf.run_study(limited.model_copy(update={"models": ["2DOF-S"]}), workers=2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, OSError])
 def test_a_study_that_is_stopped_leaves_its_parts_and_no_thread(stop, tmp_path):
     def progress(now):

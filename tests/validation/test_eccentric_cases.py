@@ -94,6 +94,7 @@ def test_a_rigid_block_falls_beyond_its_own_balance(side):
     assert status == ["rocking", "overturned"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_rigid_block_goes_on_after_its_impact(side):
     """Housner's coefficient of the side that ends gives the height of the next excursion, by energy."""

@@ -68,6 +68,7 @@ def test_lagrange_gives_equations_11_and_12(count, side):
         assert vanishes(twelve - motion.equations[1 + n], theta)
 
 
+@pytest.mark.slow
 @COUNTS
 @BOTH
 def test_lagrange_gives_equations_13_and_14(count, side):

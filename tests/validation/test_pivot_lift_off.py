@@ -79,6 +79,7 @@ def test_the_friction_that_is_needed_says_the_same(standing):
         assert bool(run.warnings) == (run.min_vertical_reaction < 0.0)
 
 
+@pytest.mark.slow
 def test_what_is_said_of_it(standing):
     run = standing.sort_values("min_vertical_reaction").response.iloc[0]
     assert run.vertical_reaction.min() == pytest.approx(run.min_vertical_reaction, rel=0.2)

@@ -36,6 +36,7 @@ def test_top_displacement_agrees_while_rocking(agreement):
     assert row["r2_high"] - row["r2_low"] < 0.02
 
 
+@pytest.mark.slow
 def test_rotation_agrees_less(agreement):
     row = agreement.loc[("rocking", "rotation", "all")]
     assert row["r2_low"] < 0.90 < row["r2_high"]

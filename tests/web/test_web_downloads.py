@@ -31,6 +31,7 @@ TONNES = {
 BED = {"base_inertia": 5e5, "springs": {"positions": [-1.0, 0.0, 1.0], "stiffness": 4e8, "damping": 1e6}}
 
 
+@pytest.mark.slow
 def test_the_report_has_the_numbers_of_the_tab(client) -> None:
     state = client.state(**STATE)
     name, body = client.download("/api/file/report", state)

@@ -290,6 +290,7 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
     assert page.locator('[data-label$="-BW"]').count() == 0
 
 
+@pytest.mark.slow
 def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
     structure = as_json_value(PRESETS[0]["structure"]) | {"eccentricity": 0.3}
     visitor = visit(link({"structure": structure, "tab": "response", "models": ["2DOF-S"]}))
