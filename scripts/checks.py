@@ -25,15 +25,15 @@ class Check(NamedTuple):
 
 PYTEST = "python -m pytest -n {workers} --dist loadgroup -q --no-header"
 CHECKS = {
-    "environment": Check("make -s .venv/.ready", 100.0),
-    "tests": Check(f'{PYTEST} -m "not slow"', 130.0),
-    "slow-tests": Check(f"{PYTEST} -m slow", 400.0),
+    "environment": Check("make -s .venv/.ready", 65.0),
+    "tests": Check(f'{PYTEST} -m "not slow"', 215.0),
+    "slow-tests": Check(f"{PYTEST} -m slow", 700.0),
     "lint": Check("make -s lint", 1.0),
-    "types": Check("make -s types", 40.0),
-    "docs": Check("make -s docs", 250.0),
-    "portable": Check("python scripts/portable_tests.py -n {workers} --dist loadgroup -q", 100.0),
-    "newest": Check("make -s test-newest", 100.0),
-    "lowest": Check("make -s test-lowest", 100.0),
+    "types": Check("make -s types", 50.0),
+    "docs": Check("make -s docs", 400.0),
+    "portable": Check("python scripts/portable_tests.py -n {workers} --dist loadgroup -q", 215.0),
+    "newest": Check("make -s test-newest", 330.0),
+    "lowest": Check("make -s test-lowest", 250.0),
 }
 
 
