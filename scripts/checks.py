@@ -27,7 +27,10 @@ PYTEST = "python -m pytest -n {workers} --dist loadgroup -q --no-header"
 CHECKS = {
     "environment": Check("make -s .venv/.ready", 65.0),
     "tests": Check(f'{PYTEST} -m "not slow"', 215.0),
-    "slow-tests": Check(f"{PYTEST} -m slow", 700.0),
+    "slow-tests": Check(f"{PYTEST} -m slow", 950.0),
+    "slow-validation": Check(f"{PYTEST} -m slow tests/validation tests/engine tests/property", 250.0),
+    "slow-web": Check(f"{PYTEST} -m slow tests/web", 450.0),
+    "slow-unit": Check(f"{PYTEST} -m slow tests/unit tests/architecture", 650.0),
     "lint": Check("make -s lint", 1.0),
     "types": Check("make -s types", 50.0),
     "docs": Check("make -s docs", 400.0),
