@@ -399,7 +399,7 @@ def test_refuses_excel(tmp_path):
 
 def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
     file = write_excel(tmp_path, {"S": ROWS})
-    monkeypatch.setattr(_columns, "MAX_UNPACKED_BYTES", 100)
+    monkeypatch.setattr(_excel, "MAX_UNPACKED_BYTES", 100)
     with pytest.raises(rf.InputError, match=r"has 0 MB when unpacked, above 0\.0001 MB\. Save it as CSV"):
         rf.read_motion(file)
 

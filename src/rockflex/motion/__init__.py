@@ -2,6 +2,7 @@
 
 from rockflex.motion._at2 import read_at2
 from rockflex.motion._columns import record_csv
+from rockflex.motion._findings import Finding
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component, is_vertical_component
 from rockflex.motion._measures import (
     MEASURES,
@@ -37,13 +38,14 @@ from rockflex.motion._spectra import ResponseSpectrum, TargetSpectrum
 from rockflex.motion._suite import Selection, Suite, load_suite, suite_names
 from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records, survey_without_obspy
 from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
-from rockflex.motion._text import UNITS, acceleration_in_text
+from rockflex.motion._units import UNITS, acceleration_in_text
 
 __all__ = [
     "FORMATS",
     "MEASURES",
     "UNITS",
     "Combination",
+    "Finding",
     "GroundMotion",
     "IntensityMeasure",
     "MeasureInput",

@@ -10,6 +10,7 @@ from rockflex._files import checked_file_path
 from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
+from rockflex.motion._units import AccelerationUnit
 
 HEADER_LINES = 12
 _MAX_NPTS_DIGITS = 18  # of NPTS that are read; no file has more samples
@@ -104,7 +105,7 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
         f'read_motion(path, units="m/s2", dt={dt:g}).'
     )
     return _text.motion_from_samples(
-        file, values, _text.AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
+        file, values, AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
     )
 
 

@@ -15,15 +15,16 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, component_record_names
+from rockflex.motion._units import AccelerationUnit, acceleration_unit
 
 # Table 2 of the format: the units of accelerations.
 UNIT_CODES = {
-    2: _text.AccelerationUnit("g"),
-    4: _text.AccelerationUnit("cm/s2"),
-    7: _text.AccelerationUnit("in/s2"),
-    10: _text.AccelerationUnit("cm/s2"),
-    11: _text.AccelerationUnit("mg"),
-    12: _text.AccelerationUnit("mg", 1e-3),
+    2: AccelerationUnit("g"),
+    4: AccelerationUnit("cm/s2"),
+    7: AccelerationUnit("in/s2"),
+    10: AccelerationUnit("cm/s2"),
+    11: AccelerationUnit("mg"),
+    12: AccelerationUnit("mg", 1e-3),
 }
 COUNTS_CODE = 50
 # Table 9: directions of a sensor that are no azimuth.
@@ -71,7 +72,7 @@ class CosmosChannel:
         return self.integer(3) == COUNTS_CODE
 
 
-def channel_unit(file: Path, channel: CosmosChannel) -> _text.AccelerationUnit:
+def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
     """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
@@ -82,17 +83,17 @@ def channel_unit(file: Path, channel: CosmosChannel) -> _text.AccelerationUnit:
                 "and 42). Download the corrected record (V2)."
             )
         gain = _text.non_negative_or_none(channel.real(47)) or 1.0
-        return _text.AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
+        return AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
     if code in UNIT_CODES:
         return UNIT_CODES[code]
     written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
-    unit = _text.acceleration_unit_name(written[1]) if written and code is None else None
+    unit = acceleration_unit(written[1]) if written and code is None else None
     if unit is None:
         raise InputError(
             f"{file}: the unit of the acceleration is not known: code {code} in place 3 of the integer header, "
             f"{channel.announced.strip()[:80]!r}. Download the corrected record (V2)."
         )
-    return _text.AccelerationUnit(unit)
+    return unit
 
 
 def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> float:

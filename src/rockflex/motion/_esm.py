@@ -14,6 +14,7 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
+from rockflex.motion._units import acceleration_unit
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
 FIRST_KEYS = ("EVENT_NAME:", "EVENT_ID:")
@@ -45,7 +46,7 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: an acceleration is expected, but DATA_TYPE is {kind[:40]!r}. Use the file of the acceleration, "
             "whose name contains ACC."
         )
-    unit = _text.acceleration_unit_name(header.get("UNITS", ""))
+    unit = acceleration_unit(header.get("UNITS", ""))
     if unit is None:
         raise InputError(
             f"{file}: UNITS is {header.get('UNITS', '')[:40]!r}, but an acceleration is expected, such as cm/s^2. "
@@ -57,9 +58,7 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     if values.size != n_samples:
         raise _text.wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
     info = _esm_record_info(file, header)
-    return [
-        _text.motion_from_samples(file, values, _text.AccelerationUnit(unit), dt, info, "Check UNITS in the header.")
-    ]
+    return [_text.motion_from_samples(file, values, unit, dt, info, "Check UNITS in the header.")]
 
 
 def _esm_record_info(file: Path, header: dict[str, str]) -> RecordInfo:

@@ -16,7 +16,8 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
-from rockflex.motion._text import AccelerationUnit, motion_from_samples, non_negative_or_none, parse_decimal
+from rockflex.motion._text import motion_from_samples, non_negative_or_none, parse_decimal
+from rockflex.motion._units import AccelerationUnit
 
 TEXT_LINES, N_INTEGERS, N_REALS = 16, 40, 60
 COLUMNS, WIDTH = 10, 8

@@ -14,6 +14,7 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import AZIMUTHS, Direction, RecordInfo
+from rockflex.motion._units import AccelerationUnit
 
 HEADER_LINES = 17  # the last one is "Memo."
 TRIGGER_DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
@@ -54,7 +55,7 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     counts = np.array([_text.parse_decimal(word, file, i) for i, line in places for word in line.split()])
     if not counts.size or abs(counts.size - duration * rate) > rate:
         raise _text.wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
-    unit = _text.AccelerationUnit("cm/s2", float(scale[1]) / float(scale[2]))
+    unit = AccelerationUnit("cm/s2", float(scale[1]) / float(scale[2]))
     info = _knet_record_info(file, header)
     remedy = "Check the scale factor in line 14."
     name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem

@@ -11,7 +11,8 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
-from rockflex.motion._text import AccelerationUnit, motion_from_samples
+from rockflex.motion._text import motion_from_samples
+from rockflex.motion._units import AccelerationUnit
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
 UNSAFE_FORMATS = ("PICKLE",)  # reading it would run code that the file contains

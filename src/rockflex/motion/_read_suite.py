@@ -19,7 +19,8 @@ from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_networ
 from rockflex.motion._record_table import RecordTable, entry_for_file, read_record_table, record_table_in_content
 from rockflex.motion._recordings import are_different_components, file_names_text, pair_vertical_records
 from rockflex.motion._suite import Suite
-from rockflex.motion._text import AccelerationUnit, declared_acceleration_unit, decoded_text, read_file_bytes
+from rockflex.motion._text import decoded_text, read_file_bytes
+from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
 RECORD_SUFFIXES = (
     *(".at2", ".csv", ".dat", ".tsv", ".txt"),

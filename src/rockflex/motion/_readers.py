@@ -15,12 +15,14 @@ from rockflex._registry import Catalogue
 from rockflex._shown import shown
 from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import find_at2_header, parse_at2
-from rockflex.motion._columns import is_excel_workbook, parse_columns, parse_excel
+from rockflex.motion._columns import parse_columns
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
+from rockflex.motion._excel import is_excel_workbook, parse_excel
 from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._knet import is_knet, parse_knet
+from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
 
 @dataclass(frozen=True)
@@ -206,7 +208,7 @@ def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: fl
 
 
 def components_in_file(
-    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
+    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
 ) -> list[GroundMotion]:
     """Return all components in a file, as `read_components` does.
 
@@ -230,7 +232,7 @@ def is_of_a_network(lines: list[str]) -> bool:
 
 
 def _read_components(
-    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
+    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
 ) -> list[GroundMotion]:
     content = _text.read_file_bytes(file)
     if is_excel_workbook(content):
@@ -258,7 +260,7 @@ def _read_components(
 
 
 def _read_columns(
-    file: Path, content: bytes, lines: list[str], units: _text.AccelerationUnit | None, dt: float | None
+    file: Path, content: bytes, lines: list[str], units: AccelerationUnit | None, dt: float | None
 ) -> list[GroundMotion]:
     """Return the columns of a text; without any, what ObsPy finds in the content."""
     try:
@@ -273,9 +275,9 @@ def _read_columns(
             raise error from None
 
 
-def _read_at2_in_g(file: Path, lines: list[str], units: _text.AccelerationUnit | None) -> GroundMotion:
+def _read_at2_in_g(file: Path, lines: list[str], units: AccelerationUnit | None) -> GroundMotion:
     motion = parse_at2(file, lines)
-    if units not in (None, _text.AccelerationUnit("g")):
+    if units not in (None, AccelerationUnit("g")):
         raise InputError(
             f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
@@ -291,9 +293,9 @@ def _with_stated_step(file: Path, found: list[GroundMotion], dt: float | None) -
     return found
 
 
-def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[_text.AccelerationUnit | None, float | None]:
+def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[AccelerationUnit | None, float | None]:
     step = None if dt is None else checked_positive("dt", dt, "s")
-    return None if units is None else _text.declared_acceleration_unit(units), step
+    return None if units is None else declared_acceleration_unit(units), step
 
 
 def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:

@@ -1,9 +1,11 @@
 """Information about a record besides its samples, and directions of components by their names."""
 
 import re
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Literal
+
+from rockflex.motion._findings import Finding
 
 Direction = Literal["horizontal", "vertical", "down"]
 CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
@@ -82,6 +84,9 @@ class RecordInfo:
         Identifier of the earthquake in the catalogue of the source, such as "EMSC-20161030_0000029".
     scale : float, optional
         Factor by which the samples of the source were multiplied, as by `GroundMotion.scaled`; None if they were not.
+    findings : tuple of Finding
+        What the reader found about quantity, unit, time step and component, and where; empty if nothing was read. It
+        is not compared, nor written to files.
 
     Examples
     --------
@@ -115,6 +120,7 @@ class RecordInfo:
     processing: str | None = None
     event_id: str | None = None
     scale: float | None = None
+    findings: tuple[Finding, ...] = field(default=(), compare=False)
 
     @property
     def is_vertical(self) -> bool:
@@ -131,8 +137,7 @@ class RecordInfo:
         >>> header.completed(rf.RecordInfo(rsn=953, magnitude=6.69)).magnitude
         6.69
         """
-        names = [field.name for field in fields(self)]
-        found = {name: getattr(other, name) for name in names if getattr(self, name) is None}
+        found = {each.name: getattr(other, each.name) for each in fields(self) if getattr(self, each.name) is None}
         return replace(self, **found)
 
 

@@ -15,8 +15,9 @@ from typing import TypeAlias, TypeVar
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.motion import _text
-from rockflex.motion._columns import excel_sheet_cells, is_excel_workbook
+from rockflex.motion._excel import excel_sheet_cells, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
 V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
@@ -61,7 +62,7 @@ class RecordTable:
     by_number: dict[int, RecordInfo] = field(default_factory=dict[int, RecordInfo])
     by_file: dict[str, RecordInfo] = field(default_factory=dict[str, RecordInfo])
     by_recording: dict[Recording, RecordInfo] = field(default_factory=dict[Recording, RecordInfo])
-    units: dict[str, _text.AccelerationUnit] = field(default_factory=dict[str, _text.AccelerationUnit])
+    units: dict[str, AccelerationUnit] = field(default_factory=dict[str, AccelerationUnit])
     steps: dict[str, float] = field(default_factory=dict[str, float])
 
     def joined(self, other: "RecordTable") -> "RecordTable":
@@ -183,7 +184,7 @@ def _add_files_of_row(table: RecordTable, stated: Mapping[str, str], info: Recor
             continue
         table.by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
         if "units" in stated:
-            table.units.setdefault(name, _text.declared_acceleration_unit(stated["units"]))
+            table.units.setdefault(name, declared_acceleration_unit(stated["units"]))
         if "dt" in stated:
             step = _record_table_number(stated["dt"]) or 0.0
             table.steps.setdefault(name, checked_positive("dt", step, "s"))

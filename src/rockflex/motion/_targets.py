@@ -10,7 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion import _text
+from rockflex.motion import _text, _units
 from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
@@ -404,9 +404,9 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    if units is not None and not is_one_of(units, _text.UNITS):
+    if units is not None and not is_one_of(units, _units.UNITS):
         raise InputError(
-            f"units must be one of {', '.join(map(repr, _text.UNITS))}, but {shown(units)} was given.", field="units"
+            f"units must be one of {', '.join(map(repr, _units.UNITS))}, but {shown(units)} was given.", field="units"
         )
     file = checked_file_path("path", path)
     table = _text.parse_numeric_table(
@@ -419,7 +419,7 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
             f"but {len(cells)} were found. Keep these."
         )
     values = np.array([[_text.parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = _text.UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
+    unit = _units.UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -432,7 +432,7 @@ def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
     found = _text.BRACKET.findall(head[: _text.end_of_last_bracket(head)])
     written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
-    name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_text.UNITS)}")
+    name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_units.UNITS)}")
     if name is not None:
         return name
     raise InputError(

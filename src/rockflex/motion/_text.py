@@ -1,4 +1,4 @@
-"""Text of record files: encodings, numbers, units of acceleration, and tables of numbers."""
+"""Text of record files: encodings, numbers, and tables of numbers."""
 
 import re
 from dataclasses import dataclass
@@ -14,13 +14,8 @@ from rockflex._files import check_regular_file
 from rockflex._shown import number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._units import AccelerationUnit, acceleration_unit
 
-UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "mg": 1e-3 * GRAVITY, "in/s2": 0.0254}
-LENGTH_UNIT = re.compile(r"(c|m)?m(?:s-2|/(s|sec)(?:2|/\2))|in(?:s-2|/(s|sec)(?:2|/\3))")
-MAX_UNIT_LENGTH = 100  # characters of a unit
-FACTOR = re.compile(
-    r"\s*+([+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[Ee][+-]?+\d++)?+)\s*+\*?+(?=[\s*a-zA-Z])\s*+(.*)", re.DOTALL
-)
 MAX_PEAK_G = 5.0  # in g; no recorded ground acceleration comes near it
 # Possessive, like all of these patterns: a match is never retried in part, so no text takes long.
 DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
@@ -31,60 +26,10 @@ BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
 
 
-@dataclass(frozen=True)
-class AccelerationUnit:
-    """A unit of acceleration, a key of `UNITS`, or a multiple of one, such as one count of a recorder."""
-
-    name: str
-    factor: float = 1.0  # how many of it the number 1 in the file means
-
-    def __str__(self) -> str:
-        return self.name if self.factor == 1.0 else f"{self.factor:.12g} {self.name}"
-
-    @property
-    def si(self) -> float:
-        """The unit in m/s²."""
-        return self.factor * UNITS[self.name]
-
-
-def acceleration_unit_name(text: str) -> str | None:
-    """Return the key of `UNITS` for a unit as headers write it, such as cm/sec^2 or gal; None if it is none."""
-    plain = re.sub(r"[\s^*·.]", "", text.lower().replace("²", "2").replace("−", "-"))
-    if plain in ("g", "mg"):
-        return plain
-    if plain in ("gal", "gals"):
-        return "cm/s2"
-    found = LENGTH_UNIT.fullmatch(plain)
-    if found is None:
-        return None
-    return "in/s2" if plain.startswith("in") else f"{found[1] or ''}m/s2"
-
-
-def acceleration_in_text(text: str) -> float | None:
-    """Return an acceleration in m/s² that is written with its unit, such as 0.25g or 2.45 m/s2; None without one."""
-    found = FACTOR.fullmatch(text) if len(text) < MAX_UNIT_LENGTH else None
-    name = found and acceleration_unit_name(found[2])
-    return None if not found or name is None else float(found[1]) * UNITS[name]
-
-
-def declared_acceleration_unit(units: object) -> AccelerationUnit:
-    """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2"."""
-    if isinstance(units, str) and len(units) < MAX_UNIT_LENGTH:
-        found = FACTOR.fullmatch(units)
-        name = acceleration_unit_name(found[2] if found else units)
-        factor = float(found[1]) if found else 1.0
-        if name is not None and np.isfinite(factor) and factor > 0.0:
-            return AccelerationUnit(name, factor)
-    raise InputError(
-        f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given. If the file holds counts, "
-        'write the value of one count: units="2.4e-4 cm/s2".',
-        field="units",
-    )
-
-
 def agreed_unit_name(file: Path, where: str, written: str, given: str | None, units: str) -> str | None:
     """Return the unit that a header states, or the one given; they must agree. `units` may be written."""
-    stated = acceleration_unit_name(written)
+    unit = acceleration_unit(written)
+    stated = None if unit is None else str(unit)
     if written and stated is None:
         raise InputError(
             f"{file}: the {where} gives the unit {shown(written)}, which is not known. "

@@ -1,0 +1,110 @@
+"""What is known of the samples in a file, and what says so: unit, time step, quantity and component."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, Literal, TypeVar
+
+from rockflex._errors import InputError
+
+T = TypeVar("T")
+What = Literal["quantity", "unit", "time step", "component", "samples"]
+MAX_QUOTED = 80  # characters of a line that is quoted
+
+
+@dataclass(frozen=True)
+class Finding:
+    r"""Something that is known of a record, and what says so.
+
+    Parameters
+    ----------
+    what : {"quantity", "unit", "time step", "component", "samples"}
+        What it is about.
+    value : str
+        What was found, such as "cm/s2" or "0.005 s".
+    evidence : str
+        What says so: a line of the file, a label, the name of the file, an argument, or the document of the format.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> _ = Path("lab.csv").write_text("time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
+    >>> [print(each) for each in rf.read_motion("lab.csv").metadata.findings][:0]
+    quantity: acceleration (label "acc (g)")
+    unit: g (label "acc (g)")
+    time step: 0.01 s (column "time (s)")
+    []
+    """
+
+    what: What
+    value: str
+    evidence: str
+
+    def __str__(self) -> str:
+        return f"{self.what}: {self.value} ({self.evidence})"
+
+
+@dataclass(frozen=True)
+class Evidence(Generic[T]):
+    """A value, and what says so, as `Finding.evidence`."""
+
+    value: T
+    said: str
+
+    def finding(self, what: What, value: str | None = None) -> Finding:
+        """Return it as a finding; `value` if it is shown in another way."""
+        return Finding(what, str(self.value) if value is None else value, self.said)
+
+
+def quoted_line(line: int, text: str) -> str:
+    """Return a line of a file as evidence."""
+    return f'line {line}: "{" ".join(text.split())[:MAX_QUOTED]}"'
+
+
+def settled(
+    file: Path,
+    what: What,
+    stated: Sequence[Evidence[T]],
+    given: Evidence[T] | None,
+    remedy: str,
+    same: Callable[[T, T], bool],
+) -> Evidence[T] | None:
+    """Return what the file states, or what the caller says where it states nothing; None if nobody says anything.
+
+    Where the file contradicts itself, the caller decides; where the caller contradicts the file, nobody does.
+
+    Parameters
+    ----------
+    stated
+        What the file says, the most trustworthy first.
+    remedy
+        What to do about statements that contradict each other, in the message.
+
+    Raises
+    ------
+    InputError
+        If two statements differ and `given` is none of them, or `given` differs from all statements.
+    """
+    field = {"unit": "units", "time step": "dt"}.get(what)
+    if given is not None:
+        if stated and not any(same(given.value, each.value) for each in stated):
+            raise InputError(
+                f"{file}: the {what} is {_shown(stated[0])} in the file, but {_shown(given)} was given. Leave it out "
+                "if the file is right; else correct the file.",
+                field=field,
+            )
+        return given
+    if not stated:
+        return None
+    other = next((each for each in stated[1:] if not same(each.value, stated[0].value)), None)
+    if other is not None:
+        raise InputError(
+            f"{file} contradicts itself about the {what}: {_shown(stated[0])}, but {_shown(other)}. {remedy}",
+            field=field,
+        )
+    return stated[0]
+
+
+def _shown(each: Evidence[T]) -> str:
+    return str(each.value) if each.said.endswith(f"={each.value}") else f"{each.value} ({each.said})"
