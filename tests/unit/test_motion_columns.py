@@ -12,7 +12,7 @@ import pytest
 import rockflex as rf
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.motion import _columns, group_stations, read_components, read_motion
+from rockflex.motion import _excel, group_stations, read_components, read_motion
 
 VALUES = np.array([0.001, -0.02, 0.3, 0.0, 0.125])
 openpyxl = pytest.importorskip("openpyxl")
