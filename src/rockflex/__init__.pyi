@@ -216,6 +216,7 @@ from .study.stripes import StripeStudy as StripeStudy
 from .study.stripes import stripe_counts as stripe_counts
 
 __version__: str
+from .motion import Finding as Finding
 from .motion import RecordSurvey as RecordSurvey
 from .motion import StationRecord as StationRecord
 from .motion import SurveyEntry as SurveyEntry
