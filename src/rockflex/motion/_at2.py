@@ -1,26 +1,25 @@
-"""Records in the AT2 format of the PEER databases."""
+"""Records in the AT2 format of the PEER databases, and others with NPTS and DT above values in sequence."""
 
 import re
+from datetime import date
 from pathlib import Path
-
-import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex.motion import _text
+from rockflex.motion._declared import Declared
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._header import header_of_lines
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
-from rockflex.motion._units import AccelerationUnit
+from rockflex.motion._sequence import Sequence, motion_of_sequence, numbers_in_lines
 
 HEADER_LINES = 12
-_MAX_NPTS_DIGITS = 18  # of NPTS that are read; no file has more samples
-_COUNT, _NUMBER, _APART = r"(\d++)", rf"({_text.DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
-NPTS = re.compile(rf"\bNPTS\s*+[=:]\s*+{_COUNT}", re.IGNORECASE)
-DT = re.compile(rf"\bDT\s*+[=:]\s*+{_NUMBER}", re.IGNORECASE)
-NUMBERS_FIRST = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
+NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
+DT = re.compile(r"\bDT\b", re.IGNORECASE)
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
-# Numbers may be adjacent if the next one begins with a sign; an exponent must then end before the sign.
-TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,+-]|$)")
+FIRST_RECORDS = (
+    33  # the first strong motions were recorded in 1933, so a year of two digits below it is of this century
+)
 
 
 def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMotion:
@@ -60,93 +59,49 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
     file = checked_file_path("path", path)
-    motion = parse_at2(file, _text.read_text_lines(file))
+    motion = parse_at2(file, _text.read_text_lines(file), Declared())
     return motion if vertical is None else motion.with_vertical(read_at2(checked_file_path("vertical", vertical)))
 
 
-def find_at2_header(lines: list[str]) -> tuple[int, int, str] | None:
-    """Return the number of header lines, NPTS and DT, or None if there is no such header."""
-    npts = dt = None
+def at2_header_end(lines: list[str]) -> int | None:
+    """Return the number of lines up to those with NPTS and DT, or None if there are none."""
+    npts = dt = False
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
-            continue  # a comment in a plain text file, which says nothing about units
-        if bare := NUMBERS_FIRST.match(line):
-            return i + 1, int(bare[1][:_MAX_NPTS_DIGITS]), bare[2]
-        npts = NPTS.search(line) or npts
-        dt = DT.search(line) or dt
+            continue  # a comment in a plain text file, whose values may stand in columns
+        npts, dt = npts or NPTS.search(line[:500]) is not None, dt or DT.search(line[:500]) is not None
         if npts and dt:
-            return i + 1, int(npts[1][:_MAX_NPTS_DIGITS]), dt[1]
+            return i + 1
     return None
 
 
-def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
+def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
     """Build the motion from the lines of an AT2 file."""
-    header = find_at2_header(lines)
-    if header is None:
+    start = at2_header_end(lines)
+    header = None if start is None else header_of_lines(file, list(enumerate(lines[:start], 1)))
+    if start is None or header is None or not header.counts or not header.steps:
         raise InputError(
             f"{file}: no header line with NPTS and DT among the first {HEADER_LINES} lines, such as "
             '"NPTS= 4000, DT= .00500 SEC". Read columns of numbers with read_motion instead.'
         )
-    start, npts, step = header
-    unit = re.search(r"units\s++of\s++\(?([\w/]++)", "\n".join(lines[:start]), re.IGNORECASE)
-    if unit and unit[1].upper() != "G":
-        raise InputError(
-            f"{file}: the header states units of {unit[1]}, but an AT2 file contains an acceleration in g. "
-            "Use the AT2 file of the record, not VT2 or DT2; save values in m/s² in a plain text file."
-        )
-    dt = _text.parse_decimal(step, file, start)
-    if dt <= 0:
-        raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
-    values = _at2_samples(file, lines, start)
-    if values.size != npts:
-        raise _text.wrong_sample_count_error(file, values.size, npts, f"NPTS = {npts}")
-    remedy = (
-        "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
-        f'read_motion(path, units="m/s2", dt={dt:g}).'
-    )
-    return _text.motion_from_samples(
-        file, values, AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
-    )
-
-
-def _at2_samples(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    try:
-        values = np.array([float(token) for line in lines[start:] for token in line.split()])
-        if np.isfinite(values).all() and not any("_" in line for line in lines[start:]):
-            return values
-    except ValueError:
-        pass
-    # The slow way: adjacent tokens, D exponents, or an error to report.
-    found: list[float] = []
-    for i, line in enumerate(lines[start:], start + 1):
-        position = 0
-        for word in re.finditer(r"[^\s,]+", line):
-            position = word.start()
-            while position < word.end():
-                token = TOKEN.match(line, position)
-                if token is None:
-                    found.append(_text.parse_decimal(line[position : word.end()], file, i))
-                    break
-                found.append(_text.parse_decimal(token[0], file, i))
-                position = token.end()
-    return np.array(found)
+    values, places = numbers_in_lines(file, lines, start)
+    found = Sequence(values, places, header, header.counts[0].said)
+    return motion_of_sequence(file, found, given, _at2_record_info(file, lines[: start - 1]))
 
 
 def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:
     number_in_name = re.match(r"RSN(\d+)", file.name, re.IGNORECASE)
     rsn = int(number_in_name[1]) if number_in_name else None
     for line in header:
-        date = DATE.search(line)
-        if date:
-            rest = [part.strip() for part in line[date.end() :].strip(" ,").split(",")]
-            year = int(date[3])
+        when = DATE.search(line)
+        if when:
+            rest = [part.strip() for part in line[when.end() :].strip(" ,").split(",")]
             component = rest[-1]
             if component.endswith(")"):
                 component = component.partition("(")[0].rstrip()
             return RecordInfo(
-                event=line[: date.start()].strip(" ,") or None,
-                # Two-digit years are from the database of 1999 and earlier.
-                year=year if year > 99 else 1900 + year,
+                event=line[: when.start()].strip(" ,") or None,
+                year=whole_year(int(when[3])),
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
                 direction=component_direction(file, component),
@@ -156,3 +111,10 @@ def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:
                 source_format="AT2",
             )
     return RecordInfo(source=file.name, rsn=rsn, direction=component_direction(file), source_format="AT2")
+
+
+def whole_year(year: int) -> int:
+    """Return a year that may be written with two digits."""
+    if year > 99:
+        return year
+    return year + (2000 if year < FIRST_RECORDS and 2000 + year <= date.today().year else 1900)

@@ -12,9 +12,9 @@ from typing import Any
 from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._columns import parse_columns
+from rockflex.motion._declared import Declared
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import unique_record_names
-from rockflex.motion._units import AccelerationUnit
 
 ZIP_MAGIC, OLD_EXCEL_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 MAX_UNPACKED_BYTES = 100_000_000  # bytes of a workbook when unpacked
@@ -29,7 +29,7 @@ def is_excel_workbook(content: bytes) -> bool:
     return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
 
 
-def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: float | None) -> list[GroundMotion]:
+def parse_excel(file: Path, content: bytes, given: Declared) -> list[GroundMotion]:
     """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
     tables = {
         name: table
@@ -42,7 +42,7 @@ def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: 
     for sheet, table in tables.items():
         name = file.stem if len(tables) == 1 else f"{file.stem}-{sheet}"
         try:
-            motions += parse_columns(file, table, units, dt, name)
+            motions += parse_columns(file, table, given, name)
         except InputError as error:
             if len(tables) == 1:
                 raise
@@ -139,9 +139,8 @@ def _table_in_excel_sheet(cells: list[list[str]]) -> _text.NumericTable | None:
 
     found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
     labels = found if any(not _text.DECIMAL.fullmatch(label) for label in found) else []
-    return _text.NumericTable(
-        labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads]
-    )
+    above = [(i, " ".join(filter(None, row))) for i, row in enumerate(heads, 1)]
+    return _text.NumericTable(labels, [(i, kept(row)) for i, row in rows], above)
 
 
 def _is_numeric_row(row: list[str]) -> bool:

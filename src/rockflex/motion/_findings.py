@@ -12,6 +12,10 @@ What = Literal["quantity", "unit", "time step", "component", "samples"]
 MAX_QUOTED = 80  # characters of a line that is quoted
 
 
+class NoAccelerationError(InputError):
+    """A file holds no acceleration, such as a velocity, a spectrum or text; a folder of records leaves it out."""
+
+
 @dataclass(frozen=True)
 class Finding:
     r"""Something that is known of a record, and what says so.
@@ -57,6 +61,16 @@ class Evidence(Generic[T]):
         return Finding(what, str(self.value) if value is None else value, self.said)
 
 
+def shown_step(dt: float) -> str:
+    """Return a time step as a finding shows it."""
+    return f"{dt:.12g} s"
+
+
+def same_step(one: float, other: float) -> bool:
+    """Return whether two statements mean the same time step, as far as digits in print tell."""
+    return abs(one - other) <= 1e-3 * other
+
+
 def quoted_line(line: int, text: str) -> str:
     """Return a line of a file as evidence."""
     return f'line {line}: "{" ".join(text.split())[:MAX_QUOTED]}"'
@@ -90,8 +104,8 @@ def settled(
     if given is not None:
         if stated and not any(same(given.value, each.value) for each in stated):
             raise InputError(
-                f"{file}: the {what} is {_shown(stated[0])} in the file, but {_shown(given)} was given. Leave it out "
-                "if the file is right; else correct the file.",
+                f"{file}: the {what} is {stated[0].value} in the file ({stated[0].said}), but {given.said} was given. "
+                "Leave the argument out if the file is right; else correct the file.",
                 field=field,
             )
         return given
@@ -100,11 +114,8 @@ def settled(
     other = next((each for each in stated[1:] if not same(each.value, stated[0].value)), None)
     if other is not None:
         raise InputError(
-            f"{file} contradicts itself about the {what}: {_shown(stated[0])}, but {_shown(other)}. {remedy}",
+            f"{file} contradicts itself about the {what}: {stated[0].value} ({stated[0].said}), but {other.value} "
+            f"({other.said}). {remedy}",
             field=field,
         )
     return stated[0]
-
-
-def _shown(each: Evidence[T]) -> str:
-    return str(each.value) if each.said.endswith(f"={each.value}") else f"{each.value} ({each.said})"

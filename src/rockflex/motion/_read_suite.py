@@ -14,6 +14,7 @@ from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex.motion._declared import Declared
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_network, stated_peak_mismatch
 from rockflex.motion._record_table import RecordTable, entry_for_file, read_record_table, record_table_in_content
@@ -139,9 +140,8 @@ def _read_record_file(
     own, step = entry_for_file(given.units, file), entry_for_file(given.steps, file)
     for_many = own is None and step is None
     try:
-        found = components_in_file(
-            file, own or common, dt if step is None else step, use_obspy=use_obspy, common=for_many
-        )
+        said = Declared(own or common, dt if step is None else step, common=for_many)
+        found = components_in_file(file, said, use_obspy=use_obspy)
     except InputError as error:
         return RecordFileContent(file, fault=error)
     motions: dict[Path, GroundMotion] = {}

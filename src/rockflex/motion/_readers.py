@@ -7,22 +7,24 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._checks import checked_instance, checked_positive
+from rockflex._checks import checked_instance
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._language import translated
 from rockflex._registry import Catalogue
 from rockflex._shown import shown
 from rockflex.motion import _obspy, _text
-from rockflex.motion._at2 import find_at2_header, parse_at2
+from rockflex.motion._at2 import at2_header_end, parse_at2
 from rockflex.motion._columns import parse_columns
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
+from rockflex.motion._declared import Declared, Layout, declared
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._excel import is_excel_workbook, parse_excel
 from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._knet import is_knet, parse_knet
-from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._sequence import find_sequence, motion_of_sequence
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,7 @@ def read_motion(
     dt: float | None = None,
     vertical: str | Path | None = None,
     component: str | None = None,
+    layout: Layout | None = None,
 ) -> GroundMotion:
     """Read a record; the content of the file decides on its format.
 
@@ -144,26 +147,28 @@ def read_motion(
     >>> rf.read_motion("record.txt", units="g")
     GroundMotion('record', 3 samples, dt=0.01 s, duration=0.02 s, pga=0.981 m/s²)
     """
-    unit, step = _checked_unit_and_step(units, dt)
+    given = declared(units, dt, layout)
     if component is not None:
         checked_instance("component", component, str)
     file = checked_file_path("path", path)
-    motion = select_component(file, components_in_file(file, unit, step), component, vertical=False)
+    motion = select_component(file, components_in_file(file, given), component, vertical=False)
     _warn_of_stated_peak(file, motion)
     if vertical is None:
         return motion
     other = checked_file_path("vertical", vertical)
-    upwards = select_component(other, components_in_file(other, unit, step), None, vertical=True)
+    upwards = select_component(other, components_in_file(other, given), None, vertical=True)
     _warn_of_stated_peak(other, upwards)
     return motion.with_vertical(upwards)
 
 
-def read_components(path: str | Path, units: str | None = None, dt: float | None = None) -> tuple[GroundMotion, ...]:
+def read_components(
+    path: str | Path, units: str | None = None, dt: float | None = None, layout: Layout | None = None
+) -> tuple[GroundMotion, ...]:
     r"""Read all components in a file: the channels of an instrument, the columns of a table, the sheets of a workbook.
 
     Parameters
     ----------
-    path, units, dt
+    path, units, dt, layout
         As in `read_motion`.
 
     Returns
@@ -192,9 +197,9 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     >>> [motion.name for motion in rf.read_components("station.csv")]
     ['station-NS', 'station-EW', 'station-UD']
     """
-    unit, step = _checked_unit_and_step(units, dt)
+    given = declared(units, dt, layout)
     file = checked_file_path("path", path)
-    found = components_in_file(file, unit, step)
+    found = components_in_file(file, given)
     for motion in found:
         _warn_of_stated_peak(file, motion)
     return tuple(found)
@@ -203,19 +208,13 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
 def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
     """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers."""
     file = checked_file_path("path", path)
-    found = components_in_file(file, *_checked_unit_and_step(units, dt), use_obspy=False)
+    found = components_in_file(file, declared(units, dt), use_obspy=False)
     return select_component(file, found, None, vertical=False)
 
 
-def components_in_file(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
-) -> list[GroundMotion]:
-    """Return all components in a file, as `read_components` does.
-
-    `use_obspy` tells whether the readers of ObsPy may be used, and `common` whether `units` and `dt` are for many
-    files, so that a format that states its own need not agree.
-    """
-    found = _read_components(file, units, dt, use_obspy=use_obspy, common=common)
+def components_in_file(file: Path, given: Declared, *, use_obspy: bool = True) -> list[GroundMotion]:
+    """Return all components in a file, as `read_components` does; `use_obspy` tells whether ObsPy may read it."""
+    found = _read_components(file, given, use_obspy=use_obspy)
     for motion in found:
         difference, text = stated_peak_mismatch(motion)
         if difference > MAX_PEAK_MISMATCH:
@@ -231,71 +230,58 @@ def is_of_a_network(lines: list[str]) -> bool:
     return any(each.known(lines) for each in FORMATS.values())
 
 
-def _read_components(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
-) -> list[GroundMotion]:
+def _read_components(file: Path, given: Declared, *, use_obspy: bool) -> list[GroundMotion]:
     content = _text.read_file_bytes(file)
     if is_excel_workbook(content):
-        return parse_excel(file, content, units, dt)
+        return parse_excel(file, content, given)
     if use_obspy and _text.decoded_text(content) is None:
         form = _obspy.obspy_format(content)
         if form is not None:
-            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
+            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, given.units), given)
         if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
     lines = _text.text_lines(file, content)
     for form in FORMATS.values():
         if form.known(lines):
             found = form.parse(file, lines)
-            if units is not None and not common:
+            if given.units is not None and not given.common:
                 raise InputError(
                     f"{file} is a file in the {form.name} format, which states its unit, but units="
-                    f"{shown(str(units))} was given. Leave units out.",
+                    f"{shown(str(given.units))} was given. Leave units out.",
                     field="units",
                 )
-            return found if common else _with_stated_step(file, found, dt)
-    if find_at2_header(lines) is not None or file.suffix.lower() == ".at2":
-        return _with_stated_step(file, [_read_at2_in_g(file, lines, units)], dt)
-    return _read_columns(file, content if use_obspy else b"", lines, units, dt)
+            return found if given.common else _with_stated_step(file, found, given)
+    if at2_header_end(lines) is not None or file.suffix.lower() == ".at2":
+        return [parse_at2(file, lines, given)]
+    return _read_numbers(file, content if use_obspy else b"", lines, given)
 
 
-def _read_columns(
-    file: Path, content: bytes, lines: list[str], units: AccelerationUnit | None, dt: float | None
-) -> list[GroundMotion]:
-    """Return the columns of a text; without any, what ObsPy finds in the content."""
+def _read_numbers(file: Path, content: bytes, lines: list[str], given: Declared) -> list[GroundMotion]:
+    """Return the values of a text, in sequence or in columns; without any, what ObsPy finds in the content."""
     try:
-        return parse_columns(file, _text.parse_numeric_table(file, lines), units, dt, file.stem)
+        found = _text.split_numeric_lines(file, lines)
+        sequence = find_sequence(file, found, given)
+        if sequence is not None:
+            return [motion_of_sequence(file, sequence, given, RecordInfo())]
+        return parse_columns(file, _text.numeric_table(file, found), given, file.stem)
     except InputError as error:
         form = _obspy.obspy_format(content) if content and error.field is None else None
         if form is None:
             raise
         try:
-            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
+            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, given.units), given)
         except _obspy.ObsPyError:
             raise error from None
 
 
-def _read_at2_in_g(file: Path, lines: list[str], units: AccelerationUnit | None) -> GroundMotion:
-    motion = parse_at2(file, lines)
-    if units not in (None, AccelerationUnit("g")):
-        raise InputError(
-            f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
-            field="units",
-        )
-    return motion
-
-
-def _with_stated_step(file: Path, found: list[GroundMotion], dt: float | None) -> list[GroundMotion]:
-    """Return the components of a file that states its step, if `dt` does not contradict it."""
+def _with_stated_step(file: Path, found: list[GroundMotion], given: Declared) -> list[GroundMotion]:
+    """Return the components of a file that states its step, if the caller does not contradict it."""
     stated = found[0].dt
-    if dt is not None and abs(dt - stated) > 1e-9 * dt:
-        raise InputError(f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
+    if given.dt is not None and abs(given.dt - stated) > 1e-9 * given.dt:
+        raise InputError(
+            f"{file} states DT = {stated:g} s, but dt={shown(given.dt)} was given. Leave dt out.", field="dt"
+        )
     return found
-
-
-def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[AccelerationUnit | None, float | None]:
-    step = None if dt is None else checked_positive("dt", dt, "s")
-    return None if units is None else declared_acceleration_unit(units), step
 
 
 def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:

@@ -1,5 +1,6 @@
 """Text of record files: encodings, numbers, and tables of numbers."""
 
+import csv
 import re
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,10 +13,12 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file
 from rockflex._shown import number_with_noun, shown
+from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._units import AccelerationUnit, acceleration_unit
+from rockflex.motion._units import AccelerationUnit, acceleration_unit, parse_unit
 
+MAX_HINTED = 40  # characters of a cell about which a hint is given
 MAX_PEAK_G = 5.0  # in g; no recorded ground acceleration comes near it
 # Possessive, like all of these patterns: a match is never retried in part, so no text takes long.
 DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
@@ -23,6 +26,18 @@ COMMA = re.compile(r"([+-]?+\d*+),\d++(?:[EeDd][+-]?+\d++)?+")  # a number with 
 SECONDS = ("s", "sec", "secs", "second", "seconds")
 TIME_LABEL = re.compile(r"(?:t|time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
 BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
+# Signs and blanks as word processors write them.
+PLAIN_SIGNS = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\ufeff": None})
+COMMENT_SIGN = re.compile(r"[#%!]")
+COMMENT = re.compile(r"(?:(?<=[\s;,])|^)[#%!]")
+ERROR_CELL = re.compile(
+    r"#(?:N/A|NV|NA|DIV/0!|VALUE!|WERT!|VALOR!|VALEUR!|REF!|BEZUG!|NAME\?|NUM!|ZAHL!|NULL!|#)", re.IGNORECASE
+)
+PERCENT = re.compile(r"%[\s;,]*+")  # after a number, its unit
+MISTYPED = re.compile(r"[OolI.,+-]*+\d[\dOolIxX.,+-]*+")  # a number with a letter in it
+QUOTED = re.compile(r'"[^"]*+"')
+QUOTED_OR_WORD = re.compile(r'"[^"]*+"|[^\s"]++')
+THOUSANDS = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})++\.\d")
 EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
 
 
@@ -80,7 +95,7 @@ def decoded_text(data: bytes) -> str | None:
             text = data.decode(encoding)
         except UnicodeDecodeError:
             continue
-        text = text.rstrip("\x1a")
+        text = text.rstrip("\x1a").translate(PLAIN_SIGNS)
         return None if re.search(r"[\x00-\x08\x0e-\x1b\x7f]", text) else text
     return None
 
@@ -91,8 +106,22 @@ def parse_decimal(token: str, file: str | Path, line: int) -> float:
         value = float(re.sub("[Dd]", "E", token))
         if np.isfinite(value):
             return value
-    hint = " Write decimals with a point." if re.fullmatch(r"[+-]?+\d++,\d++", token) else ""
-    raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}")
+    raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{_number_hint(token)}")
+
+
+def _number_hint(token: str) -> str:
+    """Return how to mend a cell that is no number."""
+    if len(token) > MAX_HINTED:
+        return ""
+    if re.fullmatch(r"[+-]?\d+,\d+", token):
+        return " Write decimals with a point."
+    if THOUSANDS.match(token.lstrip("+-")):
+        return " Write numbers without separators of thousands."
+    if re.fullmatch(r"[+-]?\d*\.\d+[+-]\d{1,3}", token):
+        return " It may have lost the E of its exponent: write it again."
+    if not token or ERROR_CELL.match(token) or token.casefold() in ("nan", "na", "n/a", "null", "none", "-", "%"):
+        return " A record without gaps is expected: fill the gap, or cut the record there."
+    return ""
 
 
 def parse_optional_decimal(text: str) -> float | None:
@@ -144,46 +173,134 @@ def checked_acceleration_in_si(
     return acceleration
 
 
-@dataclass
+@dataclass(frozen=True)
 class NumericTable:
-    """Rows of cells, each with its line, under labels; and the lines before them."""
+    """Rows of cells, each with its line, under labels; and the lines before them, with their numbers."""
 
     labels: list[str]  # empty if there are none
     rows: list[tuple[int, list[str]]]
-    heads: list[str]
+    head_lines: list[tuple[int, str]]
+    gaps: tuple[int, ...] = ()  # lines without a number between rows
+
+    @property
+    def heads(self) -> list[str]:
+        """The lines before the rows, without comment signs."""
+        return [text.strip().lstrip("#%! \t") for _, text in self.head_lines]
+
+
+@dataclass(frozen=True)
+class NumericLines:
+    """The lines of a file from the first one that is all numbers on, without comments; and those before them."""
+
+    head_lines: list[tuple[int, str]]
+    body: list[tuple[int, str]]
+    gaps: tuple[int, ...]
+
+
+def split_numeric_lines(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> NumericLines:
+    """Return the lines of numbers in a text file, and the lines before them.
+
+    `expected` describes the expected content in the message for a file without numbers.
+    """
+    heads: list[tuple[int, str]] = []
+    body: list[tuple[int, str]] = []
+    blank: list[int] = []
+    for i, line in enumerate(lines, 1):
+        content = _without_comment(line)
+        if not body:
+            if content and _begins_numbers(content):
+                body.append((i, content))
+            else:
+                heads.append((i, line))
+        elif content:
+            body.append((i, content))
+        else:
+            blank.append(i)
+    if not body:
+        raise NoAccelerationError(f"{file} holds no numbers: {expected}.")
+    last = body[-1][0]
+    return NumericLines(heads, body, tuple(line for line in blank if line < last))
+
+
+def _without_comment(line: str) -> str:
+    """Return a line without the comment that begins at a sign at its start or after a blank."""
+    if not COMMENT_SIGN.search(line):
+        return line.strip()
+    for sign in COMMENT.finditer(line):
+        # Errors such as #N/A are cells of a spreadsheet.
+        if not ERROR_CELL.match(line, sign.start()) and not PERCENT.fullmatch(line, sign.start()):
+            return line[: sign.start()].strip()
+    return line.strip()
+
+
+def _begins_numbers(content: str) -> bool:
+    cells = [cell for cell in re.split(r"[;,\s]++", content.replace('"', " ")) if cell]
+    return bool(cells) and is_number_cell(cells[0]) and all(map(is_number_cell, cells))
 
 
 def parse_numeric_table(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> NumericTable:
     """Return the rows of numbers in the lines of a text file.
 
-    Cells are separated by semicolons, commas, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A comma is a
-    decimal one where something else separates the cells; and in a single column, unless the numbers before it increase
-    like times. `expected` describes the expected content in the message for a file without numbers.
+    Cells are separated by semicolons, commas, tabs or blanks, and may stand in quotes; ``#``, ``%`` and ``!`` begin
+    comments at the start of a line or after a blank. A comma is a decimal one where something else separates the cells;
+    and in a single column, unless the numbers before it increase like times. `expected` as in `split_numeric_lines`.
     """
-    heads: list[str] = []
-    plain: list[tuple[int, str]] = []  # header lines that are not comments
-    body: list[tuple[int, str]] = []
-    for i, line in enumerate(lines, 1):
-        content = re.split("[#%!]", line, maxsplit=1)[0].strip()
-        if not body and (not content or not is_number_cell(re.split(r"[;,\s]", content, maxsplit=1)[0] or content)):
-            heads.append(line.strip().lstrip("#%! \t"))
-            plain.append((i, content))
-        elif content:
-            body.append((i, content))
-    if not body:
-        raise InputError(f"{file} holds no numbers: {expected}.")
-    separator, commas = _cell_separator(body)
+    return numeric_table(file, split_numeric_lines(file, lines, expected))
+
+
+def numeric_table(file: Path, found: NumericLines) -> NumericTable:
+    """Return the rows in the lines of numbers; see `parse_numeric_table`."""
+    body = found.body
+    separator, commas = _separator_of_quoted(body[0][1]) if '"' in body[0][1] else _cell_separator(body)
     rows: list[tuple[int, list[str]]] = []
     for i, content in body:
-        cells = [cell.strip() for cell in content.split(separator)]
-        if separator and cells[-1] == "":
-            cells.pop()
+        cells = _cells(content, separator)
         if rows and len(cells) != len(rows[0][1]):
             raise InputError(
-                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
+                f"{file}, line {i}: expected {number_with_noun(len(rows[0][1]), 'column')} as in line {rows[0][0]}, "
+                f"but found {len(cells)}. {_remedy_of_row(content)}"
             )
-        rows.append((i, [_with_decimal_point(file, i, cell) for cell in cells] if commas else cells))
-    return NumericTable(_column_labels(file, heads, plain, separator, len(rows[0][1])), rows, heads)
+        rows.append((i, cells))
+    if commas:
+        rows = [(i, [_with_decimal_point(file, i, cell) for cell in cells]) for i, cells in rows]
+    plain = [(i, _without_comment(line)) for i, line in found.head_lines]
+    heads = [line.strip().lstrip("#%! \t") for _, line in found.head_lines]
+    labels = _column_labels(file, heads, plain, separator, len(rows[0][1]))
+    return NumericTable(labels, rows, found.head_lines, found.gaps)
+
+
+def _separator_of_quoted(content: str) -> tuple[str | None, bool]:
+    """Return the character between cells of which some stand in quotes, and whether decimals in these are commas."""
+    between = QUOTED.sub("", content)
+    return next((sign for sign in ";,\t" if sign in between), None), "," in "".join(QUOTED.findall(content))
+
+
+def _remedy_of_row(content: str) -> str:
+    """Return what may be wrong with a row that has another number of cells than the first."""
+    if THOUSANDS.search(content):
+        return "Write numbers without separators of thousands."
+    if re.match(r"[A-Za-z#]", content):
+        return "Keep one table in the file: delete the text below it, or save a second table on its own."
+    return 'If the values follow each other in lines of any length, say so: layout="sequence".'
+
+
+def _cells(content: str, separator: str | None) -> list[str]:
+    plain = '"' not in content
+    cells = [cell.strip() for cell in content.split(separator)] if plain else _quoted_cells(content, separator)
+    if separator and len(cells) > 1 and cells[-1] == "":
+        cells.pop()
+    return cells
+
+
+def _quoted_cells(content: str, separator: str | None) -> list[str]:
+    """Return cells of which some stand in quotes, within which a separator is none."""
+    if separator is None:
+        return [cell.strip('"') for cell in QUOTED_OR_WORD.findall(content)]
+    try:
+        row = next(csv.reader([content], delimiter=separator, skipinitialspace=True), [])
+    except csv.Error:
+        row = content.split(separator)
+    return [cell.strip().strip('"').strip() for cell in row]
 
 
 def _cell_separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
@@ -233,17 +350,27 @@ def _column_labels(
     """Return the labels in the last header line that has as many as there are columns."""
     for i, content in plain:
         cells = _header_labels(content, separator)
+        numbers = [is_number_cell(cell) or bool(COMMA.fullmatch(cell)) for cell in cells]
         # A row of numbers with a typing error is not a header, and must not be skipped.
-        if len(cells) == n_columns and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
-            wrong = next((cell for cell in cells if not is_number_cell(cell) and not COMMA.fullmatch(cell)), None)
-            if wrong is not None and not TIME_LABEL.match(wrong):
+        if len(cells) == n_columns and not all(numbers):
+            wrong = cells[numbers.index(False)]
+            if (2 * sum(numbers) >= len(cells) and numbers[0]) or MISTYPED.fullmatch(wrong):
                 parse_decimal(wrong, file, i)
+    units: list[str] = []
     for head in reversed(heads):
         apart = [cell.strip().strip('"') for cell in head.split("\t")] if separator is None and "\t" in head else []
         labels = apart if len(apart) == n_columns else _header_labels(head, separator)
-        if len(labels) == n_columns and any(re.search("[a-zA-Z]", label) for label in labels):
-            return labels
-    return []
+        if len(labels) != n_columns or not any(re.search("[a-zA-Z]", label) for label in labels):
+            continue
+        if not units and n_columns > 1 and all(map(parse_unit, labels)):
+            units = labels  # a row of units, below that of the names
+        else:
+            return (
+                [f"{label} ({unit.strip('()[]')})" for label, unit in zip(labels, units, strict=True)]
+                if units
+                else labels
+            )
+    return units
 
 
 def _header_labels(head: str, separator: str | None) -> list[str]:

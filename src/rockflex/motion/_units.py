@@ -117,7 +117,7 @@ def _multiple(unit: Unit | None, factor: float) -> Unit | None:
 
 def _plain(text: str) -> str:
     """Return a unit in small letters, with one way to write powers, products and minus signs."""
-    text = text.strip().strip("()[]{}\"'").casefold()
+    text = text.strip().strip("()[]{}$\"'").rstrip(".").casefold()
     text = re.sub(r"[−–⁻]", "-", text.replace("²", "2").replace("¹", "1").replace("\\", "/"))
     text = re.sub(r"\bper\b", "/", text)
     text = re.sub(r"\b(?:squared|square)\b", "2", text)
