@@ -10,6 +10,8 @@ from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockflex._errors import InputError, RecordWarning
 from rockflex._shown import first_texts_shown
 from rockflex.motion import _text
@@ -26,7 +28,9 @@ MAX_ROW_BYTES = 2_000_000  # bytes of a row, all of whose cells openpyxl makes b
 MAX_CELLS = 5_000_000  # cells of a workbook, also empty ones; every 20 characters in a cell count as one
 ROW_EDGES = re.compile(rb"<(?:\w+:)?row\b|</(?:\w+:)?sheetData>")
 MAX_COLUMNS = 16384  # of a sheet
-HIDDEN_TAG = re.compile(rb'<(?:\w++:)?+(row|col)\b(?=[^>]{0,400}?\bhidden="(?:1|true)")[^>]{0,400}+>')
+MAX_TAG_BYTES = 400  # on either side of an attribute
+HIDDEN = re.compile(rb'\bhidden="(?:1|true)"')
+HIDDEN_TAG = re.compile(rb"<(?:\w++:)?+(row|col)\b")
 ATTRIBUTE = re.compile(rb'\b(min|max|r)="[A-Z]*+(\d{1,9}+)"')
 # A formula that is all there is in its cell, and the end of the cell.
 VALUELESS_FORMULA = re.compile(
@@ -166,17 +170,26 @@ def _sheet_part(part: bytes) -> SheetPart:
         return SheetPart(0, frozenset(), frozenset(), frozenset())
     ends = (each.start() for each in ROW_EDGES.finditer(part))
     longest = max((after - before for before, after in pairwise(chain(ends, [len(part)]))), default=0)
-    rows = (_attributes(each[0]) for each in HIDDEN_TAG.finditer(part) if each[1] == b"row")
-    spans = [_attributes(each[0]) for each in HIDDEN_TAG.finditer(part) if each[1] == b"col"]
-    columns = (range(each.get("min", 1) - 1, min(each.get("max", 0), MAX_COLUMNS)) for each in spans)
+    tags = [_tag_around(part, each.start()) for each in HIDDEN.finditer(part)]
+    hidden = [(found[1], _attributes(tag)) for tag in tags if (found := HIDDEN_TAG.match(tag))]
+    rows = (each.get("r", 0) for name, each in hidden if name == b"row")
+    spans = (each for name, each in hidden if name == b"col")
+    columns = np.zeros(MAX_COLUMNS, dtype=np.bool_)
+    for each in spans:
+        columns[max(each.get("min", 1) - 1, 0) : each.get("max", 0)] = True
     cells = (part[part.rfind(b"<", 0, each.start()) : each.start()] for each in VALUELESS_FORMULA.finditer(part))
     return SheetPart(
         longest,
-        frozenset(each.get("r", 0) for each in rows),
-        frozenset(k for each in columns for k in each),
+        frozenset(rows),
+        frozenset(np.flatnonzero(columns).tolist()),
         # A text that is empty is a value.
         frozenset(_attributes(cell).get("r", 0) for cell in cells if b't="str"' not in cell),
     )
+
+
+def _tag_around(part: bytes, place: int) -> bytes:
+    begin = part.rfind(b"<", max(0, place - MAX_TAG_BYTES), place)
+    return b"" if begin < 0 else part[begin : place + MAX_TAG_BYTES].partition(b">")[0]
 
 
 def _attributes(tag: bytes) -> dict[str, int]:
@@ -294,16 +307,19 @@ def _no_number(file: Path, i: int, cell: str) -> InputError:
 
 def _check_body(file: Path, sheet: ExcelSheet, body: list[tuple[int, list[str]]], used: list[int]) -> None:
     """Refuse rows of numbers that are hidden, have an empty cell or one without a number, or are two blocks."""
-    above = body[0][0] - 1
-    for i, row in body:
-        cells = [row[k] if k < len(row) else "" for k in used]
-        wrong = next((cell for cell in cells if cell and not _text.is_number_cell(cell)), None)
+    rows = [(i, [row[k] if k < len(row) else "" for k in used]) for i, row in body]
+    above = rows[0][0] - 1
+    for i, cells in rows:
+        if i == above + 1 and i not in sheet.hidden_rows and all(map(_text.is_number_cell, cells)):
+            above = i
+            continue
         apart = i > above + 1 or not any(map(_text.is_number_cell, cells))
-        if apart and any(_is_numeric_row(later) for k, later in body if k >= i):
+        if apart and any(k >= i and any(map(_text.is_number_cell, later)) for k, later in rows):
             raise InputError(
                 f"{file}, row {i}: a second block of numbers begins here. Put each block on a sheet of its own; if "
                 "they are one record, delete the rows between them."
             )
+        wrong = next((cell for cell in cells if cell and not _text.is_number_cell(cell)), None)
         if wrong is not None:
             raise _no_number(file, i, wrong)
         if "" in cells:
@@ -311,9 +327,7 @@ def _check_body(file: Path, sheet: ExcelSheet, body: list[tuple[int, list[str]]]
                 f"{file}, row {i}: column {_letters(used[cells.index('')])} has no value, but one in each row is "
                 "expected. Complete or delete the row; of two tables side by side, put each on a sheet of its own."
             )
-        if i in sheet.hidden_rows:
-            raise InputError(f"{file}, row {i} is hidden among the numbers. Unhide it, or delete it.")
-        above = i
+        raise InputError(f"{file}, row {i} is hidden among the numbers. Unhide it, or delete it.")
 
 
 def _letters(k: int) -> str:
