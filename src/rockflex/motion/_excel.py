@@ -77,7 +77,7 @@ def parse_excel(file: Path, content: bytes, given: Declared) -> list[GroundMotio
             try:
                 found[sheet.title] = parse_columns(file, table, given, f"{file.stem}-{sheet.title}")
             except InputError as error:
-                if not is_table_of_something_else(table.labels, table.heads):
+                if not is_table_of_something_else(file, table):
                     raise
                 raise NoAccelerationError(str(error), found="a table", field=error.field) from error
             left += [f"hidden column {_letters(k)} of sheet {_named(sheet)}" for k in _hidden_numbers(sheet)]

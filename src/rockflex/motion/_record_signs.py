@@ -2,21 +2,19 @@
 
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
+from rockflex._errors import InputError
 from rockflex.motion import _text
-from rockflex.motion._record_info import VERTICAL_NAME, is_horizontal_component_name
-from rockflex.motion._units import acceleration_unit
+from rockflex.motion._header import MAX_LINE, Lines, header_of_lines
+from rockflex.motion._labels import ACCELERATION, parse_label
 
-ACCELERATION_WORD = re.compile(r"\b(?:acc|acel|accél|beschl)|\bstrong.motion\b", re.IGNORECASE)
-# As in the headers of PEER, of NGA and of many programs.
-STATED_NUMBER = re.compile(r"\b(?:NPTS|NDATA|DT|DELTA_?T|SAMPLING[ _]INTERVAL[\w()]*+)\s*+[=:]\s*+[\d.]", re.IGNORECASE)
 MIN_ROWS = 3  # of numbers; a record needs as many samples
-MAX_SIGN_LINE = 500  # characters of a line that are searched
 MAX_HEADER_LINES = 100
 
 
 def has_rows_of_numbers(lines: Iterable[str]) -> bool:
-    """Return whether some lines in a row hold nothing but numbers."""
+    """Return whether some lines that follow each other hold nothing but numbers."""
     count = 0
     for line in lines:
         count = count + 1 if _is_row_of_numbers(line) else 0
@@ -25,37 +23,30 @@ def has_rows_of_numbers(lines: Iterable[str]) -> bool:
     return False
 
 
-def names_acceleration(lines: Sequence[str]) -> bool:
-    """Return whether lines say of the numbers below them that they are an acceleration, or state a time step."""
-    heads = [line[:MAX_SIGN_LINE] for line in lines_before_numbers(lines)]
-    return any(_speaks_of_acceleration(head) or STATED_NUMBER.search(head) for head in heads)
+def names_acceleration(file: Path, lines: Sequence[str]) -> bool:
+    """Return whether the lines above the numbers call these an acceleration, or state their unit or time step."""
+    heads = list(enumerate(lines[:MAX_HEADER_LINES], 1))
+    above = heads[: next((k for k, (_, line) in enumerate(heads) if _is_row_of_numbers(line)), len(heads))]
+    return _say_acceleration(file, above)
 
 
-def lines_before_numbers(lines: Sequence[str]) -> list[str]:
-    """Return the lines above the first row of numbers, of long headers the first ones."""
-    head = lines[:MAX_HEADER_LINES]
-    return list(head[: next((i for i, line in enumerate(head) if _is_row_of_numbers(line)), len(head))])
-
-
-def is_table_of_something_else(labels: Sequence[str], heads: Iterable[str]) -> bool:
-    """Return whether columns have labels of which none names an acceleration, a component or the time."""
-    return bool(labels) and not any(
-        [*map(_may_be_of_record, labels), *(_speaks_of_acceleration(head[:MAX_SIGN_LINE]) for head in heads)]
-    )
+def is_table_of_something_else(file: Path, table: _text.NumericTable) -> bool:
+    """Return whether columns have labels of which none may be that of an acceleration, nor a line above them."""
+    labels = [parse_label(text) for text in table.labels]
+    unknown = all(each.kind in ("unknown", "row number") and each.unit is None for each in labels)
+    return bool(labels) and unknown and not _say_acceleration(file, table.head_lines)
 
 
 def _is_row_of_numbers(line: str) -> bool:
-    cells = re.split(r"[\s;,]++", re.split("[#%!]", line, maxsplit=1)[0].strip(' \t"'))
-    return bool(cells[0]) and all(_text.is_number_cell(cell.strip('"')) for cell in cells if cell)
+    cells = [cell for cell in re.split(r"[\s;,\"]++", line.strip()) if cell]
+    return bool(cells) and all(map(_text.is_number_cell, cells))
 
 
-def _speaks_of_acceleration(text: str) -> bool:
-    brackets = _text.BRACKET.findall(text[: _text.end_of_last_bracket(text)])
-    return bool(ACCELERATION_WORD.search(text)) or any(acceleration_unit(each) is not None for each in brackets)
-
-
-def _may_be_of_record(label: str) -> bool:
-    end = _text.end_of_last_bracket(label)
-    name = (_text.BRACKET.sub("", label[:end]) + label[end:]).strip(" _-.")
-    named = VERTICAL_NAME.fullmatch(name) or is_horizontal_component_name(name) or _text.TIME_LABEL.match(name)
-    return bool(named) or _speaks_of_acceleration(label)
+def _say_acceleration(file: Path, lines: Lines) -> bool:
+    if any(ACCELERATION.search(line[:MAX_LINE]) for _, line in lines):
+        return True
+    try:
+        header = header_of_lines(file, lines)
+    except InputError:  # a step that cannot be one
+        return True
+    return bool(header.units or header.steps)

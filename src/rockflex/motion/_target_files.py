@@ -14,9 +14,12 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import few_texts_shown, shown
 from rockflex.motion import _text
+from rockflex.motion._declared import Declared, declared
 from rockflex.motion._findings import Evidence, quoted_line, settled
+from rockflex.motion._header import MAX_LINE, units_in_line
+from rockflex.motion._labels import parse_label
 from rockflex.motion._spectra import TargetSpectrum
-from rockflex.motion._units import UNITS, AccelerationUnit, Quantity, Unit, declared_acceleration_unit, parse_unit
+from rockflex.motion._units import UNITS, AccelerationUnit, Quantity, Unit, parse_unit
 
 Role = Literal["period", "frequency", "time", "acceleration", "velocity", "displacement"]
 MAX_SA_G = 10.0  # in g; no target comes near it
@@ -25,9 +28,8 @@ MAX_UNNAMED_PERIOD = 10.0  # s; a first column without a label that goes beyond 
 # A percent sign that ends a cell; elsewhere it begins a comment.
 PERCENT = re.compile(r"(?<=[\d.])(?:%(?=[\s;,\"]|$)|[ ]++%(?=[ ]*+(?:[;,\t\"]|$)))")
 FRACTION = "e-2"
-PHRASE = re.compile(r"\b(?:(?:in\s++)?+units?+(?:\s++of\s++|\s*+[:=])|in\s++)\s*+(.{1,40}+)", re.IGNORECASE)
 REMARK = re.compile(r"\d\s*+%|[=:]|damp|rot|mean|median|hor|elastic|design|[tf][n1i]?$", re.IGNORECASE)
-# Words of labels in small letters, whole (S_a gives "sa") and as parts of words.
+# Words of labels in small letters, whole (S_a gives "sa") and as parts of words; those of records are in `_labels`.
 WORDS: dict[Role, tuple[frozenset[str], tuple[str, ...]]] = {
     "frequency": (frozenset(("f", "fn", "hz")), ("freq", "frec", "fréq")),
     "period": (frozenset(("t", "tn", "per")), ("period", "périod", "schwing")),
@@ -44,22 +46,17 @@ ROLE_OF_QUANTITY: dict[Quantity, Role] = {
     "displacement": "displacement",
 }
 LABEL_AND_BRACKET = re.compile(r"[^()\[\]]++[(\[][^()\[\]]*+[)\]]")
-MAX_HEADER_LENGTH = 500  # characters of a line above the numbers that are searched
 EXPECTED = "a target spectrum is expected as two columns, period and S_a"
 
 
 @dataclass(frozen=True)
-class Label:
-    """The label of a column: its text, what it is about if that is known, and its unit if it states one."""
+class TargetColumn:
+    """What the label of a column says: its quantity if that is known, and its unit, or one that is not known."""
 
-    text: str
-    role: Role | None
-    unit: Unit | None
-
-    @property
-    def said(self) -> str:
-        """The label as evidence."""
-        return f"label {shown(self.text)}"
+    said: str = ""
+    role: Role | None = None
+    unit: Unit | None = None
+    unknown: str = ""
 
 
 def read_target(path: str | Path, units: str | None = None, damping_ratio: float = 0.05) -> TargetSpectrum:
@@ -101,14 +98,14 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    given = None if units is None else declared_acceleration_unit(units)
+    given = declared(units)
     file = checked_file_path("path", path)
     lines, of_hundred = _with_fractions(_text.read_text_lines(file))
     table = _text.parse_numeric_table(file, lines, EXPECTED)
-    labels = _target_labels(table)
-    x, y = _target_columns(file, table, labels)
-    periods, order = _target_periods(file, table, x, labels[x])
-    unit = _ordinate_unit(file, table, labels[y], given)
+    columns = _target_columns(table)
+    x, y = _places(file, table, columns)
+    periods, order = _target_periods(file, table, x, columns[x])
+    unit = _ordinate_unit(file, table, columns[y], given)
     if of_hundred:
         unit = _unit_of_fractions(file, [cells[y] for _, cells in table.rows], unit)
     ordinates = _column(file, table, y)[order]
@@ -138,35 +135,29 @@ def _with_fractions(lines: Sequence[str]) -> tuple[list[str], bool]:
     return found, found != list(lines)
 
 
-def _target_labels(table: _text.NumericTable) -> list[Label]:
-    """Return the label of each column; empty ones if there are none."""
+def _target_columns(table: _text.NumericTable) -> list[TargetColumn]:
+    """Return what the label of each column says; nothing if there are none."""
     count = len(table.rows[0][1])
     if table.labels:
-        return [_parsed_label(text) for text in table.labels]
+        return [_target_column(text) for text in table.labels]
     # Labels that something else separates than the numbers, or of several words, told apart by the brackets after them.
     last = next((head for head in reversed(table.heads) if head), "")
     brackets = LABEL_AND_BRACKET.findall(last[: _text.end_of_last_bracket(last)])
     for texts in (re.split("[,;\t]", last), brackets):
-        labels = [_parsed_label(text.strip(' "')) for text in texts[: count + 1]]
-        if len(labels) == count and labels[0].role in ("period", "frequency"):
-            return labels
-    return [Label("", None, None)] * count
+        columns = [_target_column(text.strip(' "')) for text in texts[: count + 1]]
+        if len(columns) == count and columns[0].role in ("period", "frequency"):
+            return columns
+    return [TargetColumn()] * count
 
 
-def _parsed_label(text: str) -> Label:
+def _target_column(text: str) -> TargetColumn:
+    label = parse_label(text)
+    units = [label.unit, *map(parse_unit, re.split("[,;]", label.unknown))]  # "g, 5%"
+    unit = next((each for each in units if each is not None), None)
     end = _text.end_of_last_bracket(text)
-    name, pieces = _text.BRACKET.sub(" ", text[:end]) + text[end:], _bracketed(text)
-    if not pieces:  # Sa_g, PSA in cm/s2
-        first, _, rest = re.sub(r"[\s_,:]++", " ", text).strip().partition(" ")
-        if parse_unit(rest.removeprefix("in ")) is not None:
-            name, pieces = first, [rest.removeprefix("in ")]
-    unit = next((found for piece in pieces if (found := parse_unit(piece)) is not None), None)
-    return Label(text, _role(name, unit), unit)
-
-
-def _bracketed(text: str) -> list[str]:
-    brackets = _text.BRACKET.findall(text[: _text.end_of_last_bracket(text)])
-    return [piece.strip() for each in brackets for piece in re.split("[,;]", each)]
+    name = _text.BRACKET.sub(" ", text[:end]) + text[end:]
+    unknown = "" if unit is not None or REMARK.search(label.unknown) else label.unknown
+    return TargetColumn(label.said, _role(name, unit), unit, unknown)
 
 
 def _role(name: str, unit: Unit | None) -> Role | None:
@@ -185,19 +176,19 @@ def _speaks_of(names: Iterable[str], words: tuple[frozenset[str], tuple[str, ...
     return any(name in whole or any(part in name for part in parts) for name in names)
 
 
-def _target_columns(file: Path, table: _text.NumericTable, labels: Sequence[Label]) -> tuple[int, int]:
-    """Return the columns of the periods or frequencies, and of the accelerations."""
+def _places(file: Path, table: _text.NumericTable, columns: Sequence[TargetColumn]) -> tuple[int, int]:
+    """Return which columns are the periods or frequencies, and the accelerations."""
     line, cells = table.rows[0]
-    along = [k for k, label in enumerate(labels) if label.role == "period"]
-    along = along or [k for k, label in enumerate(labels) if label.role == "frequency"]
-    upwards = [k for k, label in enumerate(labels) if label.role == "acceleration"]
-    others = [label for label in labels if label.role in ("velocity", "displacement")]
+    along = [k for k, each in enumerate(columns) if each.role == "period"]
+    along = along or [k for k, each in enumerate(columns) if each.role == "frequency"]
+    upwards = [k for k, each in enumerate(columns) if each.role == "acceleration"]
+    others = [each for each in columns if each.role in ("velocity", "displacement")]
     if not upwards and others:
         raise InputError(
             f"{file} holds a {others[0].role} ({others[0].said}), but a target is a pseudo-acceleration: give its "
             'file or column, labelled "sa (g)".'
         )
-    times = [label for label in labels if label.role == "time"]
+    times = [each for each in columns if each.role == "time"]
     if times and not along:
         raise InputError(
             f"{file}: {times[0].said} names times, so this may be a record, which read_motion reads. "
@@ -205,15 +196,15 @@ def _target_columns(file: Path, table: _text.NumericTable, labels: Sequence[Labe
         )
     if len(cells) == 2 and len(along) < 2 and len(upwards) < 2:
         x = along[0] if along else 1 - upwards[0] if upwards else 0
-        if upwards != [x] and labels[x].role in ("period", "frequency", None):
+        if upwards != [x] and columns[x].role in ("period", "frequency", None):
             return x, 1 - x
     if len(along) == len(upwards) == 1:
         return along[0], upwards[0]
-    if len(cells) > 2 and any(label.text for label in labels):
-        named = few_texts_shown([shown(label.text) for label in labels])
+    if len(cells) > 2 and any(each.said for each in columns):
         raise InputError(
             f'{file}: one label must name the period, such as "period (s)", and one the acceleration, such as '
-            f'"sa (g)", but the labels are {named}. Keep these two columns.'
+            f'"sa (g)", but the labels are {few_texts_shown([shown(each) for each in table.labels])}. Keep these two '
+            "columns."
         )
     raise InputError(
         f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
@@ -225,7 +216,7 @@ def _column(file: Path, table: _text.NumericTable, k: int) -> Array:
     return np.array([_text.parse_decimal(cells[k], file, line) for line, cells in table.rows])
 
 
-def _target_periods(file: Path, table: _text.NumericTable, k: int, label: Label) -> tuple[Array, slice]:
+def _target_periods(file: Path, table: _text.NumericTable, k: int, label: TargetColumn) -> tuple[Array, slice]:
     """Return the periods in s, and the order of the rows in which those of frequencies increase."""
     values, kind = _column(file, table, k), "frequency" if label.role == "frequency" else "time"
     _check_label_unit(file, label, kind, "s, ms or, for a frequency, Hz")
@@ -256,35 +247,26 @@ def _target_periods(file: Path, table: _text.NumericTable, k: int, label: Label)
     return 1.0 / (factor * values[order]), order
 
 
-def _check_label_unit(file: Path, label: Label, quantity: str, units: str) -> None:
+def _check_label_unit(file: Path, label: TargetColumn, quantity: str, units: str) -> None:
     """Refuse a label whose brackets hold no unit, or that of another quantity."""
-    unknown = [piece for piece in _bracketed(label.text) if not (REMARK.search(piece) or parse_unit(piece))]
-    if label.unit is None and unknown:
+    if label.unknown:
         raise InputError(
-            f"{file}: {label.said} gives the unit {shown(unknown[0])}, which is not known. Write it as {units}, and "
+            f"{file}: {label.said} gives the unit {shown(label.unknown)}, which is not known. Write it as {units}, and "
             "convert the values if necessary."
         )
     if label.unit is not None and label.unit.quantity != quantity:
         raise InputError(f"{file}: {label.said} contradicts itself, its unit is none of a {label.role}. Correct it.")
 
 
-def _ordinate_unit(
-    file: Path, table: _text.NumericTable, label: Label, given: AccelerationUnit | None
-) -> AccelerationUnit:
+def _ordinate_unit(file: Path, table: _text.NumericTable, label: TargetColumn, given: Declared) -> AccelerationUnit:
     """Return the unit that the label, a line above, or the caller states; they must agree."""
     _check_label_unit(file, label, "acceleration", f"one of {', '.join(UNITS)}, %g")
     stated = [Evidence(each, label.said) for each in [label.unit and label.unit.acceleration] if each]
-    for line, head in enumerate(table.heads, 1):
-        found = [parse_unit(each) for each in _units_in_phrases(head[:MAX_HEADER_LENGTH])]
-        stated += [Evidence(each.acceleration, quoted_line(line, head)) for each in found if each and each.acceleration]
-    unit = settled(
-        file,
-        "unit",
-        stated,
-        None if given is None else Evidence(given, f"units={given}"),
-        "Correct the one that is wrong, or give units=.",
-        AccelerationUnit.same,
-    )
+    for (line, text), head in zip(table.head_lines, table.heads, strict=True):
+        found = [unit.acceleration for unit in units_in_line(head[:MAX_LINE])]
+        stated += [Evidence(each, quoted_line(line, text)) for each in found if each is not None]
+    remedy = 'Say which one holds: units="g", "m/s2" or "cm/s2".'
+    unit = settled(file, "unit", stated, given.unit_evidence, remedy, AccelerationUnit.same)
     if unit is not None:
         return unit.value
     raise InputError(
@@ -292,12 +274,6 @@ def _ordinate_unit(
         '"cm/s2"; or write the header "period (s), sa (g)".',
         field="units",
     )
-
-
-def _units_in_phrases(text: str) -> list[str]:
-    """Return what may be a unit in a line such as "Units: s, g" or "spectral acceleration in cm/s2 (5 % damping)"."""
-    pieces = [piece.strip(" ().") for each in PHRASE.findall(text) for piece in re.split("[,;]", each)]
-    return [word for piece in pieces for word in {piece, piece.partition(" ")[0]}]
 
 
 def _unit_of_fractions(file: Path, cells: Sequence[str], unit: AccelerationUnit) -> AccelerationUnit:
