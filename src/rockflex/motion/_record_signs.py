@@ -1,12 +1,15 @@
 """Signs in a text by which it may be a record, or is none, before it is read and when it cannot be read."""
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from rockflex._errors import InputError
 from rockflex.motion import _text
-from rockflex.motion._header import MAX_LINE, Lines, header_of_lines
+from rockflex.motion._header import MAX_LINE, MAX_STEP, MIN_STEP, Lines, header_of_lines
 from rockflex.motion._labels import ACCELERATION, parse_label
 
 MIN_ROWS = 3  # of numbers; a record needs as many samples
@@ -31,10 +34,23 @@ def names_acceleration(file: Path, lines: Sequence[str]) -> bool:
 
 
 def is_table_of_something_else(file: Path, table: _text.NumericTable) -> bool:
-    """Return whether columns have labels of which none may be that of an acceleration, nor a line above them."""
+    """Return whether columns have labels of which none may be that of an acceleration, nor a line above them.
+
+    A column by itself, or beside one that increases as times do, may be a record whatever its label.
+    """
     labels = [parse_label(text) for text in table.labels]
     unknown = all(each.kind in ("unknown", "row number") and each.unit is None for each in labels)
-    return bool(labels) and unknown and not _say_acceleration(file, table.head_lines)
+    if not labels or not unknown or _say_acceleration(file, table.head_lines):
+        return False
+    return len(labels) > 2 or (len(labels) == 2 and not _may_be_times([cells[0] for _, cells in table.rows]))
+
+
+def _may_be_times(cells: Sequence[str]) -> bool:
+    values = [_text.parse_optional_decimal(cell) for cell in cells]
+    times = np.array([math.nan if value is None else value for value in values])
+    steps = np.diff(times)
+    even = steps.size > 0 and bool(np.ptp(steps) <= 0.5 * abs(float(steps[0])))
+    return even and MIN_STEP <= float(steps.mean()) <= MAX_STEP
 
 
 def _is_row_of_numbers(line: str) -> bool:
