@@ -16,6 +16,7 @@ from rockflex.motion._sequence import Sequence, motion_of_sequence, numbers_in_l
 HEADER_LINES = 12
 NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
 DT = re.compile(r"\bDT\b", re.IGNORECASE)
+TEXT = re.compile(r"\s*+[#%!]?+\s*+[A-Za-z][A-Za-z]")
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
 FIRST_RECORDS = (
     33  # the first strong motions were recorded in 1933, so a year of two digits below it is of this century
@@ -64,15 +65,21 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
 
 
 def at2_header_end(lines: list[str]) -> int | None:
-    """Return the number of lines up to those with NPTS and DT, or None if there are none."""
+    """Return the number of lines above the values under NPTS and DT, or None if these are not stated."""
     npts = dt = False
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
             continue  # a comment in a plain text file, whose values may stand in columns
         npts, dt = npts or NPTS.search(line[:500]) is not None, dt or DT.search(line[:500]) is not None
         if npts and dt:
-            return i + 1
-    return None
+            end = i + 1
+            break
+    else:
+        return None
+    # The unit may stand below; a word without a digit is no number with an error in it.
+    while end < min(len(lines), HEADER_LINES) and (not lines[end].strip() or TEXT.match(lines[end])):
+        end += 1
+    return end
 
 
 def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
@@ -86,7 +93,7 @@ def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
         )
     values, places = numbers_in_lines(file, lines, start)
     found = Sequence(values, places, header, header.counts[0].said)
-    return motion_of_sequence(file, found, given, _at2_record_info(file, lines[: start - 1]))
+    return motion_of_sequence(file, found, given, _at2_record_info(file, lines[:start]))
 
 
 def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:

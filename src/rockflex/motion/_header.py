@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._record_info import VERTICAL_NAME, component_azimuth, is_horizontal_component_name
-from rockflex.motion._units import TIMES, AccelerationUnit, Quantity, Unit, parse_unit
+from rockflex.motion._units import BRACKET, TIMES, AccelerationUnit, Quantity, Unit, end_of_last_bracket, parse_unit
 
 Lines = Sequence[tuple[int, str]]
 MAX_LINE = 500  # characters of a line that are looked at
@@ -158,7 +158,7 @@ def _units_in_line(line: str) -> Iterator[Unit]:
         if any(_unit_at_start(chunk) for chunk in chunks):
             return
     found = False
-    for bracket in _text.BRACKET.finditer(line, 0, _text.end_of_last_bracket(line)):
+    for bracket in BRACKET.finditer(line, 0, end_of_last_bracket(line)):
         before = line[: bracket.start()].rstrip()
         unit = parse_unit(bracket[1])
         if unit is not None and not (before and before[-1].isdigit()):

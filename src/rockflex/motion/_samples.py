@@ -95,6 +95,9 @@ def settled_unit(
     found = settled(file, "unit", stated, given.unit_evidence, remedy, AccelerationUnit.same)
     if found is not None:
         return found
+    counts = next((each for each in header.quantities if each.value == "counts"), None)
+    if counts is not None:
+        raise counts_need_value(file, counts.said)
     if header.unknown:
         raise InputError(
             f"{file}: the header gives the unit {header.unknown[0].value!r}, which is not known "
@@ -105,6 +108,14 @@ def settled_unit(
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
+        field="units",
+    )
+
+
+def counts_need_value(file: Path, said: str) -> InputError:
+    """Return the error of a file that holds counts of a recorder, whose value nobody gives."""
+    return InputError(
+        f'{file} holds counts of a recorder by its {said}. Give the value of one count: units="2.4e-4 cm/s2".',
         field="units",
     )
 

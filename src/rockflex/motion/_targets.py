@@ -430,7 +430,7 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
 
 def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = _text.BRACKET.findall(head[: _text.end_of_last_bracket(head)])
+    found = _units.BRACKET.findall(head[: _units.end_of_last_bracket(head)])
     written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
     name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_units.UNITS)}")
     if name is not None:
