@@ -8,6 +8,7 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex.motion import _text
 from rockflex.motion._declared import Declared
+from rockflex.motion._findings import Finding, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._header import header_of_lines
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
@@ -99,25 +100,30 @@ def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
 def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:
     number_in_name = re.match(r"RSN(\d+)", file.name, re.IGNORECASE)
     rsn = int(number_in_name[1]) if number_in_name else None
-    for line in header:
+    for number, line in enumerate(header, 1):
         when = DATE.search(line)
         if when:
             rest = [part.strip() for part in line[when.end() :].strip(" ,").split(",")]
             component = rest[-1]
             if component.endswith(")"):
                 component = component.partition("(")[0].rstrip()
+            direction = component_direction(file, component)
+            named = component_direction(Path(), component) is not None
+            said = quoted_line(number, line) if named else f'name of the file "{file.name}"'
+            way = f"{component}, {direction}" if named else f"{direction}"
             return RecordInfo(
                 event=line[: when.start()].strip(" ,") or None,
                 year=whole_year(int(when[3])),
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
-                direction=component_direction(file, component),
+                direction=direction,
+                findings=() if direction is None else (Finding("component", way, said),),
                 azimuth=component_azimuth(component),
                 source=line.strip(),
                 rsn=rsn,
                 source_format="AT2",
             )
-    return RecordInfo(source=file.name, rsn=rsn, direction=component_direction(file), source_format="AT2")
+    return RecordInfo(source=file.name, rsn=rsn, source_format="AT2")
 
 
 def whole_year(year: int) -> int:

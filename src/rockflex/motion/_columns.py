@@ -29,6 +29,7 @@ from rockflex.motion._samples import (
     settled_step,
     settled_unit,
 )
+from rockflex.motion._units import Quantity
 
 RECORD_MARK = "Record of rockflex"
 NOT_WRITTEN = ("source_format", "stated_pga", "findings")  # they are about the file that was read
@@ -65,7 +66,9 @@ def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: 
     for k in places:
         label = labels[k] if labels else None
         # Beside other columns a header may speak of these.
-        words = [] if label is None or label.kind != "acceleration" else [Evidence("acceleration", label.said)]
+        words = (
+            [] if label is None or label.kind != "acceleration" else [Evidence[Quantity]("acceleration", label.said)]
+        )
         quantity = settled_quantity(file, words, header if n_columns <= 2 else Header())
         units[k] = settled_unit(file, _label_unit(file, label, given), header, given, columns=True)
         quantities[k] = finding_of_quantity(quantity, units[k])

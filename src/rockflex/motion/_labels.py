@@ -24,7 +24,9 @@ WORDS: tuple[tuple[Kind, str], ...] = (
     ("force", r"force|load|kraft|fuerza|forza|p"),
     ("counts", r"counts?|cnts?"),
 )
-KINDS = [(kind, re.compile(rf"(?:{words})", re.IGNORECASE)) for kind, words in WORDS]
+KINDS: list[tuple[Kind, re.Pattern[str]]] = [
+    (kind, re.compile(rf"(?:{words})", re.IGNORECASE)) for kind, words in WORDS
+]
 ACCELERATION = re.compile(
     r"(?:ground[\s_-]++)?+(?:accelerations?|accelerazione|acceleracion|accelerogram|accel|acc|aceleraci[oó]n|acel|"
     r"beschleunigung|beschl|accélération|accél)\.?+"
