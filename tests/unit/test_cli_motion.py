@@ -283,7 +283,7 @@ def test_a_suite_with_a_vertical_file_of_columns(tmp_path):
 def test_motions_that_differ_only_vertically_are_two(tmp_path):
     for folder, peak in (("x", 1.0), ("y", 2.0)):
         (tmp_path / folder).mkdir()
-        text = f"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n1,1,{peak}\n2,0,0\n"
+        text = f"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n0.05,1,{peak}\n0.1,0,0\n"
         (tmp_path / folder / "a.csv").write_text(text)
     with pytest.raises(InputError, match="hold different motions, both named 'a'"):
         find_motions([str(tmp_path / "x"), str(tmp_path / "y")])

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import first_texts_shown, number_with_noun
+from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
     from rockflex.cli._find_motions import FoundMotion
-    from rockflex.motion import RecordSurvey, SurveyEntry
+    from rockflex.motion import Finding, RecordInfo, RecordSurvey, SurveyEntry
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -31,6 +31,7 @@ rockflex motion folder --vertical pair
 
 rockflex motion record.csv --units g --dt 0.01 --json"""
 
+MAX_FOUND = 8  # kinds of files whose findings are printed
 PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉₋", "0123456789-")  # a terminal may lack subscripts
 
 
@@ -85,6 +86,7 @@ def motion(
         typer.echo(output.to_json(document))
     else:
         _print_motion_measures(rows, periods, damping)
+        _print_findings(found)
 
 
 def _units_of_measures() -> dict[str, str]:
@@ -162,6 +164,20 @@ def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[flo
     console.print_line(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²")
 
 
+def _print_findings(found: Sequence["FoundMotion"]) -> None:
+    """Print what the readers of files found, and where; motions of which the same was found share their lines."""
+    names: dict[tuple[Finding, ...], list[str]] = {}
+    for item in found:
+        info = item.motion.metadata
+        if info is not None and info.findings:
+            names.setdefault(info.findings, []).append(item.motion.name)
+    for findings, of in list(names.items())[:MAX_FOUND]:
+        console.print_line(f"\n{few_texts_shown(of)}, as read:")
+        console.print_rows(("what", "value", "by"), [[each.what, each.value, each.evidence] for each in findings], 3)
+    if len(names) > MAX_FOUND:
+        console.print_line(f"\nWhat was found in the other {len(names) - MAX_FOUND} kinds of files: --json")
+
+
 def _print_vertical_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> None:
     from rockflex._constants import GRAVITY
 
@@ -175,17 +191,22 @@ def _print_vertical_measures(rows: Sequence[dict[str, Any]], periods: Sequence[f
     console.print_rows(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
 
 
+def _facts(info: "RecordInfo") -> dict[str, Any]:
+    """Return the metadata of a record for a row of a table."""
+    from dataclasses import asdict
+
+    return asdict(info) | {"findings": "; ".join(map(str, info.findings))}
+
+
 def _write_motion_measures(
     folder: Path, document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
 ) -> None:
-    from dataclasses import asdict
-
     import pandas as pd
 
     few = len(found) <= figures
     with output.staged_output_folder(folder, document, force=force) as stage:
         rows = [
-            {**row, "metadata": None} | (asdict(row["metadata"]) if row["metadata"] else {})
+            {**row, "metadata": None} | (_facts(row["metadata"]) if row["metadata"] else {})
             for row in document["motions"]
         ]
         table = pd.DataFrame(rows).drop(columns="metadata")

@@ -8,6 +8,7 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex.motion import _text
 from rockflex.motion._declared import Declared
+from rockflex.motion._findings import Finding, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._header import header_of_lines
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
@@ -16,6 +17,7 @@ from rockflex.motion._sequence import Sequence, motion_of_sequence, numbers_in_l
 HEADER_LINES = 12
 NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
 DT = re.compile(r"\bDT\b", re.IGNORECASE)
+TEXT = re.compile(r"\s*+[#%!]?+\s*+[A-Za-z][A-Za-z]")
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
 FIRST_RECORDS = (
     33  # the first strong motions were recorded in 1933, so a year of two digits below it is of this century
@@ -64,15 +66,21 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
 
 
 def at2_header_end(lines: list[str]) -> int | None:
-    """Return the number of lines up to those with NPTS and DT, or None if there are none."""
+    """Return the number of lines above the values under NPTS and DT, or None if these are not stated."""
     npts = dt = False
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
             continue  # a comment in a plain text file, whose values may stand in columns
         npts, dt = npts or NPTS.search(line[:500]) is not None, dt or DT.search(line[:500]) is not None
         if npts and dt:
-            return i + 1
-    return None
+            end = i + 1
+            break
+    else:
+        return None
+    # The unit may stand below; a word without a digit is no number with an error in it.
+    while end < min(len(lines), HEADER_LINES) and (not lines[end].strip() or TEXT.match(lines[end])):
+        end += 1
+    return end
 
 
 def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
@@ -86,31 +94,36 @@ def parse_at2(file: Path, lines: list[str], given: Declared) -> GroundMotion:
         )
     values, places = numbers_in_lines(file, lines, start)
     found = Sequence(values, places, header, header.counts[0].said)
-    return motion_of_sequence(file, found, given, _at2_record_info(file, lines[: start - 1]))
+    return motion_of_sequence(file, found, given, _at2_record_info(file, lines[:start]))
 
 
 def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:
     number_in_name = re.match(r"RSN(\d+)", file.name, re.IGNORECASE)
     rsn = int(number_in_name[1]) if number_in_name else None
-    for line in header:
+    for number, line in enumerate(header, 1):
         when = DATE.search(line)
         if when:
             rest = [part.strip() for part in line[when.end() :].strip(" ,").split(",")]
             component = rest[-1]
             if component.endswith(")"):
                 component = component.partition("(")[0].rstrip()
+            direction = component_direction(file, component)
+            named = component_direction(Path(), component) is not None
+            said = quoted_line(number, line) if named else f'name of the file "{file.name}"'
+            way = f"{component}, {direction}" if named else f"{direction}"
             return RecordInfo(
                 event=line[: when.start()].strip(" ,") or None,
                 year=whole_year(int(when[3])),
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
-                direction=component_direction(file, component),
+                direction=direction,
+                findings=() if direction is None else (Finding("component", way, said),),
                 azimuth=component_azimuth(component),
                 source=line.strip(),
                 rsn=rsn,
                 source_format="AT2",
             )
-    return RecordInfo(source=file.name, rsn=rsn, direction=component_direction(file), source_format="AT2")
+    return RecordInfo(source=file.name, rsn=rsn, source_format="AT2")
 
 
 def whole_year(year: int) -> int:

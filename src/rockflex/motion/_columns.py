@@ -21,6 +21,7 @@ from rockflex.motion._record_info import RecordInfo, component_azimuth, unique_r
 from rockflex.motion._samples import (
     ComponentEvidence,
     check_missing_values,
+    counts_need_value,
     finding_of_quantity,
     remedy_of_unit,
     settled_component,
@@ -28,6 +29,7 @@ from rockflex.motion._samples import (
     settled_step,
     settled_unit,
 )
+from rockflex.motion._units import Quantity
 
 RECORD_MARK = "Record of rockflex"
 NOT_WRITTEN = ("source_format", "stated_pga", "findings")  # they are about the file that was read
@@ -52,6 +54,8 @@ class ColumnRoles:
 def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: str) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
     labels = [parse_label(each) for each in table.labels]
+    if _is_sentence(labels):
+        labels, table = [], replace(table, labels=[], label_lines=())
     header = header_of_lines(file, _lines_above(table))
     n_columns = len(table.rows[0][1])
     roles = column_roles(file, labels, n_columns)
@@ -62,9 +66,11 @@ def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: 
     for k in places:
         label = labels[k] if labels else None
         # Beside other columns a header may speak of these.
-        words = [] if label is None or label.kind != "acceleration" else [Evidence("acceleration", label.said)]
+        words = (
+            [] if label is None or label.kind != "acceleration" else [Evidence[Quantity]("acceleration", label.said)]
+        )
         quantity = settled_quantity(file, words, header if n_columns <= 2 else Header())
-        units[k] = settled_unit(file, _label_unit(file, label), header, given, columns=True)
+        units[k] = settled_unit(file, _label_unit(file, label, given), header, given, columns=True)
         quantities[k] = finding_of_quantity(quantity, units[k])
     values = {k: _column_samples(file, table, k) for k in places}
     for k in places:
@@ -74,11 +80,12 @@ def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: 
             f"{file}, line {table.gaps[0]}: a line without a number stands inside the record. A value is missing, or "
             "two records follow each other: fill the gap, or save each record on its own."
         )
-    if n_columns == 1 and values[0][0] in (given.dt, *(each.value for each in header.steps)) and given.layout is None:
+    steps = (given.dt, *(each.value for each in header.steps))
+    if n_columns == 1 and given.layout is None and values[0][0] in steps:
         line, (cell,) = table.rows[0]
         raise InputError(
-            f"{file}, line {line}: the first value, {cell}, is the time step. Delete the line if it is no sample; if it "
-            'is one, say layout="columns".',
+            f"{file}, line {line}: the first value, {cell}, is the time step. Delete the line if it is no sample; if "
+            'it is one, say layout="columns".',
             field="layout",
         )
     own = table.heads[:1] == [RECORD_MARK]
@@ -139,10 +146,14 @@ def _findings(
 
 
 def _lines_above(table: _text.NumericTable) -> list[tuple[int, str]]:
-    """Return the lines above the numbers but the one with the labels."""
-    last = max((k for k, (_, text) in enumerate(table.head_lines) if text.strip()), default=-1)
-    labelled = bool(table.labels) and last >= 0
-    return [each for k, each in enumerate(table.head_lines) if not (labelled and k == last)]
+    """Return the lines above the numbers, but those with the labels of several columns."""
+    labelled = table.label_lines if len(table.labels) > 1 else ()
+    return [each for each in table.head_lines if each[0] not in labelled]
+
+
+def _is_sentence(labels: list[Label]) -> bool:
+    """Return whether the labels of two columns are two words, as in "Acceleration [g], corrected"."""
+    return len(labels) == 2 and labels[0].kind == "acceleration" and labels[1].kind == "unknown"
 
 
 def _are_regular(gaps: Sequence[int]) -> bool:
@@ -177,26 +188,22 @@ def column_roles(file: Path, labels: list[Label], n_columns: int) -> ColumnRoles
         given = ", ".join(shown(labels[k].text) for k in times)
         raise InputError(f"{file}: the header names {len(times)} columns as time, {given}. Keep one of them.")
     vertical = upwards[0] if upwards else None
-    time = (
-        times[0]
-        if times
-        else 0
-        if n_columns == 2 and len(along) + len(upwards) == 1 and _is_time(labels, along, upwards)
-        else None
-    )
-    if len(along) == 1 or (not along and vertical is not None):
-        return ColumnRoles(time, tuple(along) or (vertical,), vertical if along else None)  # pyright: ignore[reportArgumentType]
+    time = times[0] if times else None
+    timed = bool(times) or "row number" in kinds or n_columns == 1
+    if len(along) == 1 and (timed or (n_columns == 2 and vertical is not None)):
+        return ColumnRoles(time, (along[0],), vertical)
+    if not along and vertical is not None and timed:
+        return ColumnRoles(time, (vertical,), None)
     names = {labels[k].component for k in along} - {""}
     if len(along) > 1 and len(names) == len(along):
         return ColumnRoles(time, tuple(along), vertical)
     other = next((label for label in labels if label.kind in ("velocity", "displacement", "force", *OTHERS)), None)
     if other is not None and not along:
         raise _no_acceleration(file, other)
-    if n_columns <= 2 and not (len(along) > 1):
-        time = None if n_columns == 1 else 1 if times == [1] else 0
-        if time == 0 and kinds[:1] == ["row number"]:
-            return ColumnRoles(None, (1,), None)
-        return ColumnRoles(time, (1 if time == 0 else 0,), None)
+    if n_columns == 1:
+        return ColumnRoles(None, (0,), None)
+    if n_columns == 2:  # a label of the first column alone is a word of a sentence, unless it is one of times
+        return ColumnRoles(1, (0,), None) if times == [1] else ColumnRoles(0, (1,), None)
     said = "" if not labels or along else " No label is known as that of an acceleration."
     raise InputError(
         f"{file} has {n_columns} columns, and its header does not name one as time and at least one as "
@@ -204,11 +211,6 @@ def column_roles(file: Path, labels: list[Label], n_columns: int) -> ColumnRoles
         'added as "vertical (g)", and further horizontal ones with names of their own, "acc NS (g), acc EW (g)". '
         'If the values follow each other line by line, say so: layout="sequence".'
     )
-
-
-def _is_time(labels: list[Label], along: list[int], upwards: list[int]) -> bool:
-    """Return whether the first of two columns is the time, although no label says so."""
-    return 0 not in (*along, *upwards) and labels[0].kind in ("unknown", "period")
 
 
 def _no_acceleration(file: Path, label: Label) -> NoAccelerationError:
@@ -257,7 +259,7 @@ def _may_be_acceleration(label: Label) -> bool:
     return label.unit is None or label.unit.quantity in ("acceleration", "counts")
 
 
-def _label_unit(file: Path, label: Label | None) -> list[Evidence[Any]]:
+def _label_unit(file: Path, label: Label | None, given: Declared) -> list[Evidence[Any]]:
     """Return the unit in a label as evidence; none if it states none."""
     if label is None:
         return []
@@ -267,7 +269,11 @@ def _label_unit(file: Path, label: Label | None) -> list[Evidence[Any]]:
             "Write it as g, m/s2 or cm/s2, and convert the values if necessary.",
             field="units",
         )
-    if label.unit is None or label.unit.quantity == "counts":
+    if label.unit is None:
+        return []
+    if label.unit.quantity == "counts":
+        if given.units is None:
+            raise counts_need_value(file, label.said)
         return []
     if label.unit.acceleration is None:
         raise InputError(

@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._record_info import VERTICAL_NAME, component_azimuth, is_horizontal_component_name
-from rockflex.motion._units import TIMES, AccelerationUnit, Quantity, Unit, parse_unit
+from rockflex.motion._units import BRACKET, TIMES, AccelerationUnit, Quantity, Unit, end_of_last_bracket, parse_unit
 
 Lines = Sequence[tuple[int, str]]
 MAX_LINE = 500  # characters of a line that are looked at
@@ -33,7 +33,9 @@ QUANTITY_WORDS: tuple[tuple[str, Quantity], ...] = (
     (r"force\w*|load|kraft|fuerza|forza", "force"),
     (r"counts?", "counts"),
 )
-QUANTITY = {kind: re.compile(rf"(?<![\w])(?:{words})(?![\w])", re.IGNORECASE) for words, kind in QUANTITY_WORDS}
+QUANTITY: dict[Quantity, re.Pattern[str]] = {
+    kind: re.compile(rf"(?<![\w])(?:{words})(?![\w])", re.IGNORECASE) for words, kind in QUANTITY_WORDS
+}
 SPECTRUM = re.compile(
     r"(?:(?:pseudo|acceleration|velocity|displacement|elastic|design|target|fourier|power|5\s*+%\s*+damped)[\s_-]++)*+"
     r"(?:response[\s_-]++)?+spectr(?:um|a|al)\b(?![\s_-]++(?:compatible|match\w*))|.*\bresponse[\s_-]++spectr(?:um|a)\b(?!\s*+:)",
@@ -112,7 +114,7 @@ def header_of_lines(file: Path, lines: Lines) -> Header:
 
 
 def _add_quantity_and_unit(found: Header, line: str, said: str) -> None:
-    words = [kind for kind, pattern in QUANTITY.items() if pattern.search(line)]
+    words: list[Quantity] = [kind for kind, pattern in QUANTITY.items() if pattern.search(line)]
     units = list(units_in_line(line))
     typed = TYPE_LINE.match(line)
     about_value = ABOUT_A_VALUE.search(line)
@@ -136,10 +138,12 @@ def _add_quantity_and_unit(found: Header, line: str, said: str) -> None:
         same = any(unit.quantity == word for unit in units)
         valued = re.search(r"[:=]\s*+[+-]?+\d", line)
         if word != "counts" and ((begins and not valued) or (same and not valued)):
-            found.quantities.append(Evidence(word, said))
+            found.quantities.append(Evidence[Quantity](word, said))
     elif not words and not about_value and UNIT_WORD.search(line):
-        kinds = {unit.quantity for unit in units} & {"velocity", "displacement", "force"}
-        found.quantities.extend(Evidence(kind, said) for kind in sorted(kinds))
+        kinds: list[Quantity] = [
+            each for each in ("displacement", "force", "velocity") if each in {unit.quantity for unit in units}
+        ]
+        found.quantities.extend(Evidence[Quantity](kind, said) for kind in kinds)
 
 
 def units_in_line(line: str) -> Iterator[Unit]:
@@ -158,7 +162,7 @@ def units_in_line(line: str) -> Iterator[Unit]:
         if any(_unit_at_start(chunk) for chunk in chunks):
             return
     found = False
-    for bracket in _text.BRACKET.finditer(line, 0, _text.end_of_last_bracket(line)):
+    for bracket in BRACKET.finditer(line, 0, end_of_last_bracket(line)):
         before = line[: bracket.start()].rstrip()
         unit = parse_unit(bracket[1])
         if unit is not None and not (before and before[-1].isdigit()):

@@ -4,12 +4,11 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-from rockflex.motion import _text
 from rockflex.motion._record_info import HORIZONTAL_NAME, VERTICAL_NAME
-from rockflex.motion._units import Quantity, Unit, parse_unit
+from rockflex.motion._units import BRACKET, Quantity, Unit, end_of_last_bracket, parse_unit
 
 Kind = Quantity | Literal["row number", "period", "component", "unknown"]
-# The last character of a label may be a number, as in acc1, so these end at anything but a letter.
+# The last character of a label may be a number, as in acc1.
 WORDS: tuple[tuple[Kind, str], ...] = (
     ("spectrum", r"p?s[_-]?[adv]|p?s[_-]?a[_-]?rotd\d*|spectr\w*|response\s*spectr\w*|sa\s*\(t\)|sa[_-]?rotd\d*"),
     ("period", r"periods?|periodo|période|periode"),
@@ -25,7 +24,9 @@ WORDS: tuple[tuple[Kind, str], ...] = (
     ("force", r"force|load|kraft|fuerza|forza|p"),
     ("counts", r"counts?|cnts?"),
 )
-KINDS = [(kind, re.compile(rf"(?:{words})", re.IGNORECASE)) for kind, words in WORDS]
+KINDS: list[tuple[Kind, re.Pattern[str]]] = [
+    (kind, re.compile(rf"(?:{words})", re.IGNORECASE)) for kind, words in WORDS
+]
 ACCELERATION = re.compile(
     r"(?:ground[\s_-]++)?+(?:accelerations?|accelerazione|acceleracion|accelerogram|accel|acc|aceleraci[oó]n|acel|"
     r"beschleunigung|beschl|accélération|accél)\.?+"
@@ -76,7 +77,7 @@ def parse_label(text: str) -> Label:
     plain = text[:MAX_LABEL].strip().strip('"')
     unit, unknown, component = None, "", ""
     rest = plain
-    for bracket in _text.BRACKET.finditer(plain, 0, _text.end_of_last_bracket(plain)):
+    for bracket in BRACKET.finditer(plain, 0, end_of_last_bracket(plain)):
         inside = bracket[1].strip()
         found = parse_unit(inside)
         if found is not None and unit is None:
@@ -112,8 +113,8 @@ def _without_unit(rest: str) -> tuple[str, Unit | None]:
         if before.casefold().endswith(" in"):
             before = before[:-3].rstrip(BEFORE_TAIL)
         # a_g is the acceleration of the ground, and a t_s may be any time.
-        if not before or (before.casefold() == "a" and tail.casefold() == "g"):
-            continue
+        if not before or before[-1].isdigit() or (before.casefold() == "a" and tail.casefold() == "g"):
+            continue  # a value with its unit is no label
         unit = parse_unit(LABEL_UNITS.get(tail.casefold(), tail))
         if unit is None or (unit.quantity in ("displacement", "force") and len(tail) < 2):
             continue

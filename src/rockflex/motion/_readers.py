@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._checks import checked_instance
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._language import translated
@@ -67,6 +68,7 @@ FORMATS = Catalogue[RecordFormat](
 )
 PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
 PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
+LIKE_GRAVITY = (0.8, 1.2)  # g; no earthquake has such a mean
 MAX_PEAK_MISMATCH = 0.2  # relative difference that only a wrong scale or another record explains
 
 
@@ -86,13 +88,15 @@ def read_motion(
     - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
     - COSMOS (V1, V2; V0 if the header states the value of a count), with one or more channels.
     - GeoNet (V1A, V2A), with all components of an instrument, in mm/s².
-    - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
-      commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
-      acceleration, two columns are time (s) and acceleration, unless a header line names them as two components. With
-      more columns, a header line must have exactly one label that begins with "t" or "time" and one that begins with
-      "acc"; a label "vertical" or "up", also after "acc", is the vertical acceleration, positive upwards. More than one
-      horizontal acceleration needs names, as in "acc NS (g), acc EW (g)", "a_x (g), a_y (g), a_z (g)" or "NS (gal),
-      EW (gal), UD (gal)"; z, v and UD are vertical.
+    - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks, and cells may stand in
+      quotes; decimals may be marked by commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A
+      single column is the acceleration, two columns are time and acceleration, unless a header line names them as two
+      components. With more columns, a header line must name one as time and at least one as acceleration; a label
+      "vertical" or "up", also after "acc", is the vertical acceleration, positive upwards. More than one horizontal
+      acceleration needs names, as in "acc NS (g), acc EW (g)", "a_x (g), a_y (g), a_z (g)" or "NS (gal), EW (gal),
+      UD (gal)"; z, v and UD are vertical.
+    - Values in sequence, in lines of any length: under ``NPTS= 4000, DT= .005 SEC`` or another header that states how
+      many there are, under a line ``npts dt``, or five and more a line without labels.
     - Excel workbooks (.xlsx), with the same columns in one or more sheets; needs openpyxl, ``rockflex[excel]``.
     - Formats that ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
 
@@ -104,12 +108,14 @@ def read_motion(
         The file.
     units : str, optional
         Unit of the acceleration: "g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", or a number and one of these, such as
-        "2.4e-4 cm/s2" for the value of one count. Needed unless a column header states it in brackets, as "acc (g)",
-        "a [m/s^2]" or "acceleration (gal)", or a line above the numbers says "units: g", or the format does.
+        "2.4e-4 cm/s2" for the value of one count. Needed unless the label of a column states it, as "acc (g)",
+        "a [m/s^2]" or "acc_gal", or a line above the numbers does, or the format. It may not contradict these; where
+        they contradict each other, it decides.
     dt : float, optional
-        Sampling step in s; needed if the file has no times, and no line above the numbers says "dt = 0.01 s". For a
-        file with a time column it replaces times that were rounded in print: each must lie within half a step of its
-        nominal time.
+        Sampling step in s; needed if the file has no times, and no line above the numbers says "dt = 0.01 s",
+        "sampling rate: 100 Hz" or the like; and if the step would be below 1e-4 or above 0.1 s, since such numbers
+        mostly are in another unit or count rows. For a file with a time column it replaces times that were rounded in
+        print: each must lie within half a step, or one printed digit, of its nominal time.
     vertical : str or Path, optional
         The file of the vertical component, with the same time step; `units` and `dt` apply to it as well. It may be the
         same file, if that holds several components. Zeros are appended to the shorter record, and a component that is
@@ -117,18 +123,23 @@ def read_motion(
         by one.
     component : str, optional
         Name of the component, for a file with several horizontal ones; see `read_components`.
+    layout : {"columns", "sequence"}, optional
+        Whether the lines of a text file without a known format hold columns, or values that follow each other; found
+        out by default.
 
     Returns
     -------
     GroundMotion
         The record in m/s², named after the file without its suffix, and after the component if the file has several.
-        `GroundMotion.metadata` contains the information in the header.
+        `GroundMotion.metadata` contains the information in the header; its `findings` tell what says which quantity,
+        unit, time step and component the samples have.
 
     Raises
     ------
     InputError
-        If the file is missing, empty, of an unknown format, or needs a package that is not installed; `units` or `dt`
-        is missing, contradicts the file or is not valid; a value is not a finite number; there are fewer or more values
+        If the file is missing, empty, of an unknown format, or needs a package that is not installed; it holds a
+        velocity, displacement or spectrum; `units` or `dt` is missing, contradicts the file or is not valid; the file
+        contradicts itself; a value is not a finite number; there are fewer or more values
         than the header states; rows differ in length; time steps are not equal and positive; the peak exceeds 5 g,
         which indicates a wrong unit, or differs by more than 20 % from that in the header. A file is never read in
         part. Also if there are several horizontal components and `component` names none of them. With `vertical` also
@@ -137,7 +148,7 @@ def read_motion(
     Warns
     -----
     RecordWarning
-        If the peak differs by 1 to 20 % from that in the header.
+        If the peak differs by 1 to 20 % from that in the header, or the mean is about 1 g.
 
     Examples
     --------
@@ -152,12 +163,12 @@ def read_motion(
         checked_instance("component", component, str)
     file = checked_file_path("path", path)
     motion = select_component(file, components_in_file(file, given), component, vertical=False)
-    _warn_of_stated_peak(file, motion)
+    _warn_of_remarks(file, motion)
     if vertical is None:
         return motion
     other = checked_file_path("vertical", vertical)
     upwards = select_component(other, components_in_file(other, given), None, vertical=True)
-    _warn_of_stated_peak(other, upwards)
+    _warn_of_remarks(other, upwards)
     return motion.with_vertical(upwards)
 
 
@@ -201,7 +212,7 @@ def read_components(
     file = checked_file_path("path", path)
     found = components_in_file(file, given)
     for motion in found:
-        _warn_of_stated_peak(file, motion)
+        _warn_of_remarks(file, motion)
     return tuple(found)
 
 
@@ -284,10 +295,21 @@ def _with_stated_step(file: Path, found: list[GroundMotion], given: Declared) ->
     return found
 
 
-def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:
-    _, text = stated_peak_mismatch(motion)
-    if text:
+def _warn_of_remarks(file: Path, motion: GroundMotion) -> None:
+    for text in remarks_on_samples(motion):
         warnings.warn(f"{file}: {text}.", RecordWarning, stacklevel=3)
+
+
+def remarks_on_samples(motion: GroundMotion) -> list[str]:
+    """Return what is odd about the samples of a record: another peak than that stated, or the weight among them."""
+    _, peak = stated_peak_mismatch(motion)
+    mean = float(motion.acceleration.mean())
+    weight = translated(
+        "the mean is {mean} m/s², about 1 g, so that the sensor seems to have measured gravity too, which doubles the "
+        "weight: motion.baseline_corrected(0) takes the mean off",
+        mean=f"{mean:.4g}",
+    )
+    return [*filter(None, [peak]), *([weight] if LIKE_GRAVITY[0] <= abs(mean) / GRAVITY <= LIKE_GRAVITY[1] else [])]
 
 
 def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:

@@ -22,16 +22,28 @@ from rockflex.motion._record_info import VERTICAL_NAME, Direction, component_azi
 from rockflex.motion._units import AccelerationUnit, Quantity
 
 SUFFIXES: dict[str, Quantity] = {
-    **dict.fromkeys((".at2", ".acc", ".accel"), "acceleration"),
-    **dict.fromkeys((".vt2", ".vel", ".veloc"), "velocity"),
-    **dict.fromkeys((".dt2", ".dis", ".disp", ".dsp", ".displ"), "displacement"),
-    **dict.fromkeys((".rsp", ".spc", ".fas"), "spectrum"),
+    ".at2": "acceleration",
+    ".acc": "acceleration",
+    ".vt2": "velocity",
+    ".vel": "velocity",
+    ".dt2": "displacement",
+    ".dis": "displacement",
+    ".disp": "displacement",
+    ".dsp": "displacement",
+    ".rsp": "spectrum",
+    ".spc": "spectrum",
+    ".fas": "spectrum",
 }
 # Words in the name of a file that say what it holds, where nothing else does.
 NAME_WORDS: dict[str, Quantity] = {
-    **dict.fromkeys(("vel", "velocity", "veloc"), "velocity"),
-    **dict.fromkeys(("dis", "disp", "displ", "displacement"), "displacement"),
-    **dict.fromkeys(("spectrum", "spectra", "psa", "sa"), "spectrum"),
+    "vel": "velocity",
+    "velocity": "velocity",
+    "dis": "displacement",
+    "disp": "displacement",
+    "displacement": "displacement",
+    "spectrum": "spectrum",
+    "spectra": "spectrum",
+    "psa": "spectrum",
 }
 MISSING = re.compile(r"-?9{2,}(?:\.(?:9+|0*))?|-?99\.(?:9{2,}|0*)|-?9999\d*")
 MIN_MISSING = 99.0
@@ -57,12 +69,14 @@ class Way:
 
 def settled_quantity(file: Path, words: list[Evidence[Quantity]], header: Header) -> Evidence[Quantity] | None:
     """Return what says that samples are an acceleration, None if nothing does; or raise an error with what they are."""
-    stated = [*words, *(each for each in header.quantities if each.value != "counts")]
+    stated: list[Evidence[Quantity]] = [*words, *(each for each in header.quantities if each.value != "counts")]
     suffix = SUFFIXES.get(file.suffix.lower())
     if suffix is not None:
         stated.append(Evidence(suffix, f'suffix of the file "{file.suffix}"'))
     elif not stated:
-        named = [NAME_WORDS[word] for word in re.split(r"[-_. ]", file.stem.lower()) if word in NAME_WORDS]
+        named: list[Quantity] = [
+            NAME_WORDS[word] for word in re.split(r"[-_. ]", file.stem.lower()) if word in NAME_WORDS
+        ]
         stated += [Evidence(named[-1], f'name of the file "{file.name}"')] if named else []
     others = [each for each in stated if each.value != "acceleration"]
     if others and len(others) == len(stated):
@@ -95,6 +109,9 @@ def settled_unit(
     found = settled(file, "unit", stated, given.unit_evidence, remedy, AccelerationUnit.same)
     if found is not None:
         return found
+    counts = next((each for each in header.quantities if each.value == "counts"), None)
+    if counts is not None:
+        raise counts_need_value(file, counts.said)
     if header.unknown:
         raise InputError(
             f"{file}: the header gives the unit {header.unknown[0].value!r}, which is not known "
@@ -105,6 +122,14 @@ def settled_unit(
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
+        field="units",
+    )
+
+
+def counts_need_value(file: Path, said: str) -> InputError:
+    """Return the error of a file that holds counts of a recorder, whose value nobody gives."""
+    return InputError(
+        f'{file} holds counts of a recorder by its {said}. Give the value of one count: units="2.4e-4 cm/s2".',
         field="units",
     )
 
@@ -143,9 +168,9 @@ def settled_component(file: Path, label: ComponentEvidence | None, header: list[
     stated += header
     by_name = component_direction(file)
     name = stated[0].value if stated else ""
-    ways = [Evidence(_direction(each.value), each.said) for each in stated]
+    ways = [Evidence[Direction](_direction(each.value), each.said) for each in stated]
     if by_name is not None:
-        ways.append(Evidence(by_name, f'name of the file "{file.name}"'))
+        ways.append(Evidence[Direction](by_name, f'name of the file "{file.name}"'))
     remedy = "Correct the label or the header, or rename the file."
     found = settled(file, "component", ways, None, remedy, _same_way)
     if found is None:

@@ -1,7 +1,7 @@
 """Records whose values follow each other, in lines of any length, under a header with their number and time step."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -154,7 +154,7 @@ def motion_of_sequence(
         unit.finding("unit"),
         step.finding("time step", shown_step(step.value)),
     ]
-    findings += [] if way.finding is None else [way.finding]
+    findings += info.findings or ([] if way.finding is None else [way.finding])
     findings.append(Finding("samples", f"{values.size} in sequence", found.said))
     own = RecordInfo(
         component=way.name or None,
@@ -164,5 +164,5 @@ def motion_of_sequence(
         source_format="sequence",
         findings=tuple(findings),
     )
-    known = RecordInfo(findings=tuple(findings)).completed(info).completed(own)
+    known = replace(info.completed(own), findings=tuple(findings))
     return _text.motion_from_samples(file, values, unit.value, step.value, known, remedy_of_unit(unit))

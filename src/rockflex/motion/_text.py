@@ -15,8 +15,9 @@ from rockflex._files import check_regular_file
 from rockflex._shown import number_with_noun, shown
 from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._labels import parse_label
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._units import AccelerationUnit, acceleration_unit, parse_unit
+from rockflex.motion._units import BRACKET, AccelerationUnit, acceleration_unit, end_of_last_bracket, parse_unit
 
 MAX_HINTED = 40  # characters of a cell about which a hint is given
 MAX_PEAK_G = 5.0  # in g; no recorded ground acceleration comes near it
@@ -25,7 +26,6 @@ DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
 COMMA = re.compile(r"([+-]?+\d*+),\d++(?:[EeDd][+-]?+\d++)?+")  # a number with a decimal comma
 SECONDS = ("s", "sec", "secs", "second", "seconds")
 TIME_LABEL = re.compile(r"(?:t|time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
-BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 # Signs and blanks as word processors write them.
 PLAIN_SIGNS = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\ufeff": None})
 COMMENT_SIGN = re.compile(r"[#%!]")
@@ -181,6 +181,7 @@ class NumericTable:
     rows: list[tuple[int, list[str]]]
     head_lines: list[tuple[int, str]]
     gaps: tuple[int, ...] = ()  # lines without a number between rows
+    label_lines: tuple[int, ...] = ()
 
     @property
     def heads(self) -> list[str]:
@@ -263,10 +264,18 @@ def numeric_table(file: Path, found: NumericLines) -> NumericTable:
         rows.append((i, cells))
     if commas:
         rows = [(i, [_with_decimal_point(file, i, cell) for cell in cells]) for i, cells in rows]
-    plain = [(i, _without_comment(line)) for i, line in found.head_lines]
-    heads = [line.strip().lstrip("#%! \t") for _, line in found.head_lines]
-    labels = _column_labels(file, heads, plain, separator, len(rows[0][1]))
-    return NumericTable(labels, rows, found.head_lines, found.gaps)
+    n_columns = len(rows[0][1])
+    labels, label_lines = _column_labels(file, found.head_lines, separator, n_columns)
+    if not labels and separator is None and n_columns > 1 and _counts_rows(rows):
+        # Tables in print have no label above the numbers of their rows.
+        labels, label_lines = _column_labels(file, found.head_lines, separator, n_columns - 1)
+        labels = ["", *labels] if any(parse_label(label).kind == "acceleration" for label in labels) else []
+    return NumericTable(labels, rows, found.head_lines, found.gaps, label_lines)
+
+
+def _counts_rows(rows: list[tuple[int, list[str]]]) -> bool:
+    first = rows[0][1][0]
+    return first in ("0", "1") and all(cells[0] == str(int(first) + k) for k, (_, cells) in enumerate(rows))
 
 
 def _separator_of_quoted(content: str) -> tuple[str | None, bool]:
@@ -345,11 +354,15 @@ def _with_decimal_point(file: Path, line: int, cell: str) -> str:
 
 
 def _column_labels(
-    file: Path, heads: list[str], plain: list[tuple[int, str]], separator: str | None, n_columns: int
-) -> list[str]:
-    """Return the labels in the last header line that has as many as there are columns."""
-    for i, content in plain:
-        cells = _header_labels(content, separator)
+    file: Path, head_lines: list[tuple[int, str]], separator: str | None, n_columns: int
+) -> tuple[list[str], tuple[int, ...]]:
+    """Return the labels in the last header line that has as many as there are columns, and its line.
+
+    A line with a sentence may have as many words: above the last line, one of the labels must be known. Below the
+    labels may stand a line with their units.
+    """
+    for i, line in head_lines:
+        cells = _header_labels(_without_comment(line), separator)
         numbers = [is_number_cell(cell) or bool(COMMA.fullmatch(cell)) for cell in cells]
         # A row of numbers with a typing error is not a header, and must not be skipped.
         if len(cells) == n_columns and not all(numbers):
@@ -357,20 +370,23 @@ def _column_labels(
             if (2 * sum(numbers) >= len(cells) and numbers[0]) or MISTYPED.fullmatch(wrong):
                 parse_decimal(wrong, file, i)
     units: list[str] = []
-    for head in reversed(heads):
+    units_line = ()
+    filled = [(i, line.strip().lstrip("#%! \t")) for i, line in head_lines if line.strip()]
+    for i, head in reversed(filled):
         apart = [cell.strip().strip('"') for cell in head.split("\t")] if separator is None and "\t" in head else []
         labels = apart if len(apart) == n_columns else _header_labels(head, separator)
+        last = i == filled[-1][0] or bool(units)
         if len(labels) != n_columns or not any(re.search("[a-zA-Z]", label) for label in labels):
             continue
+        if not last and not any(parse_label(label).kind in ("time", "acceleration") for label in labels):
+            continue
         if not units and n_columns > 1 and all(map(parse_unit, labels)):
-            units = labels  # a row of units, below that of the names
-        else:
-            return (
-                [f"{label} ({unit.strip('()[]')})" for label, unit in zip(labels, units, strict=True)]
-                if units
-                else labels
-            )
-    return units
+            units, units_line = labels, (i,)
+            continue
+        if units:
+            labels = [f"{label} ({unit.strip('()[]')})" for label, unit in zip(labels, units, strict=True)]
+        return labels, (i, *units_line)
+    return units, units_line
 
 
 def _header_labels(head: str, separator: str | None) -> list[str]:
@@ -382,11 +398,6 @@ def _header_labels(head: str, separator: str | None) -> list[str]:
         return re.split(r"[;,\s]\s*", head)
     cells = [cell.strip().strip('"') for cell in head.split(separator)]
     return cells[:-1] if cells[-1] == "" else cells
-
-
-def end_of_last_bracket(text: str) -> int:
-    """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
-    return max(text.rfind(")"), text.rfind("]")) + 1
 
 
 def is_number_cell(token: str) -> bool:

@@ -46,6 +46,7 @@ OVER = re.compile(
     rf"(?:(?P<one>/{SECOND}|{SECOND}-1)|(?P<two>/\(?{SECOND}2\)?|/\(?{SECOND}/?{SECOND}\)?|/{SECOND}/{SECOND}|"
     rf"{SECOND}-2|{SECOND}-1{SECOND}-1))?"
 )
+BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
 GRAVITIES = {"g": 1.0, "g's": 1.0, "gs": 1.0, "gn": 1.0, "%g": 0.01, "percentg": 0.01, "mg": 1e-3}
 GALS = {"gal": 1.0, "gals": 1.0, "galileo": 1.0, "mgal": 1e-3, "milligal": 1e-3}
 COUNTS = ("count", "counts", "cnt", "cnts", "digits", "lsb")
@@ -177,3 +178,8 @@ def declared_acceleration_unit(units: object) -> AccelerationUnit:
         'write the value of one count: units="2.4e-4 cm/s2".',
         field="units",
     )
+
+
+def end_of_last_bracket(text: str) -> int:
+    """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
+    return max(text.rfind(")"), text.rfind("]")) + 1

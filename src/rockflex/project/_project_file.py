@@ -118,7 +118,8 @@ def _input_members(project: Any) -> tuple[dict[str, Any], dict[str, bytes]]:
     for place, motion in enumerate(project.motions, 1):
         file = _member_name("records", place, motion.name, ".csv")
         files[file] = record_csv(motion).encode()
-        info = {} if motion.metadata is None else {"info": _known(vars(motion.metadata))}
+        known = None if motion.metadata is None else _known(vars(motion.metadata) | {"findings": None})
+        info = {} if known is None else {"info": known}
         records.append({"name": motion.name, "file": file, "dt": motion.dt, **info})
     document = {
         "format": FORMAT,
