@@ -318,15 +318,23 @@ def _print_record_survey(found: "RecordSurvey") -> None:
             names = list(dict.fromkeys(entry.file for entry in entries if entry.reason == reason))
             console.print_line(f"  {first_texts_shown(names, MAX_NAMED_FILES)}: {reason}")
     if found.findings:
-        console.print_line("\nWhat says so:")
+        console.print_line("\nAs read:")
+        console.print_rows(("what", "value", "by", "files"), _rows_of_findings(found), 4)
+
+
+def _rows_of_findings(found: "RecordSurvey") -> list[list[str]]:
+    """Return what the readers found, each with the files that share it; of many that differ, the first ones."""
     read = len({entry.file for entry in found.entries if entry.findings})
+    rows: list[list[str]] = []
     for kind in dict.fromkeys(each.what for each in found.findings):
-        shared = {each: names for each, names in found.findings.items() if each.what == kind}
-        for each, names in list(shared.items())[:MAX_FINDINGS]:
-            of = f"all {read} files" if len(names) == read > 1 else first_texts_shown(names, MAX_NAMED_FILES)
-            console.print_line(f"  {each}: {of}")
+        shared = [(each, names) for each, names in found.findings.items() if each.what == kind]
+        for each, names in shared[:MAX_FINDINGS]:
+            whole = len(names) == read > 1
+            files = f"all {read}" if whole else first_texts_shown(names, MAX_NAMED_FILES)
+            rows.append([kind, each.value, each.evidence, files])
         if len(shared) > MAX_FINDINGS:
-            console.print_line(f"  {kind}: {len(shared) - MAX_FINDINGS} more, which --json tells")
+            rows.append([kind, f"{len(shared) - MAX_FINDINGS} more: --json", "", ""])
+    return rows
 
 
 def _station_count_text(found: "RecordSurvey") -> str:

@@ -79,7 +79,7 @@ def parse_excel(file: Path, content: bytes, given: Declared) -> list[GroundMotio
             except InputError as error:
                 if not is_table_of_something_else(file, table):
                     raise
-                raise NoAccelerationError(str(error), found="a table", field=error.field) from error
+                raise NoAccelerationError(str(error), found="table", field=error.field) from error
             left += [f"hidden column {_letters(k)} of sheet {_named(sheet)}" for k in _hidden_numbers(sheet)]
         except NoAccelerationError as error:
             left.append(f"sheet {_named(sheet)} ({error.found})")

@@ -229,12 +229,15 @@ def _not_read(folder: FolderFiles) -> Iterator[tuple[str, str]]:
     for file in folder.archives:
         yield file.name, translated("an archive, which was not unpacked")
     for path, count in folder.folders.items():
-        text = (
-            "a folder with {n} file, which was not entered"
-            if count == 1
-            else "a folder with {n} files, which was not entered"
+        yield (
+            f"{path.name}/",
+            translated(
+                "a folder with {n} file, which was not entered"
+                if count == 1
+                else "a folder with {n} files, which was not entered",
+                n=count,
+            ),
         )
-        yield f"{path.name}/", translated(text, n=count)
 
 
 def _survey_entries(
