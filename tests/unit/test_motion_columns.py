@@ -113,7 +113,7 @@ def rows(*lines):
         (rows("0 1", "0.1 nan", "0.2 3"), "line 2: expected a finite number, but found 'nan'"),
         (rows("nan 1", "0.1 2", "0.2 3"), "line 1: expected a finite number, but found 'nan'"),
         (rows("0 1", "0.1 inf", "0.2 3"), "line 2: expected a finite number, but found 'inf'"),
-        (rows("0,1", "0.1,", "0.2,3"), "line 2: expected 2 columns as in line 1, but found 1"),
+        (rows("0,1", "0.1,", "0.2,3"), "line 2: expected a finite number, but found ''.*without gaps"),
         (rows("0 1", "0.1 2 3", "0.2 3"), "line 2: expected 2 columns as in line 1, but found 3"),
         (rows("0 1", "0.1 2", "", "end"), "line 4: expected 2 columns"),
         (rows("0 0.1", "0,1 0.2", "0.2 1"), "line 1: '0.1' has a decimal point, but other numbers have decimal commas"),

@@ -53,7 +53,7 @@ class ColumnRoles:
 
 def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: str) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
-    labels = [parse_label(each) for each in table.labels]
+    labels = _with_letters_as_components([parse_label(each) for each in table.labels])
     if _is_sentence(labels):
         labels, table = [], replace(table, labels=[], label_lines=())
     header = header_of_lines(file, _lines_above(table))
@@ -175,7 +175,6 @@ def _column_samples(file: Path, table: _text.NumericTable, k: int) -> Array:
 
 def column_roles(file: Path, labels: list[Label], n_columns: int) -> ColumnRoles:
     """Return which columns are which."""
-    labels = _with_letters_as_components(labels)
     kinds = [label.kind for label in labels]
     times = [k for k, kind in enumerate(kinds) if kind == "time"]
     if not times and {"period", "frequency"} & set(kinds):
@@ -238,10 +237,12 @@ def _acceleration_columns(labels: list[Label], times: list[int]) -> tuple[list[i
     """Return the columns of horizontal and of vertical accelerations, as far as labels tell."""
     named = [k for k, label in enumerate(labels) if label.kind == "acceleration"]
     alone = [k for k, label in enumerate(labels) if label.kind == "component" and _may_be_acceleration(label)]
-    if {label.text.strip() for label in labels} == {"X", "Y"}:  # a curve
+    if {label.text.strip().casefold() for label in labels} == {"x", "y"}:  # a curve
         return [], []
     measured = [
-        k for k, label in enumerate(labels) if label.kind == "unknown" and label.unit and label.unit.acceleration
+        k
+        for k, label in enumerate(labels)
+        if label.kind == "counts" or (label.kind == "unknown" and label.unit and label.unit.acceleration)
     ]
     if named:
         # Of components that are not said to be accelerations, the vertical one belongs to those that are.
@@ -270,11 +271,11 @@ def _label_unit(file: Path, label: Label | None, given: Declared) -> list[Eviden
             "Write it as g, m/s2 or cm/s2, and convert the values if necessary.",
             field="units",
         )
-    if label.unit is None:
-        return []
-    if label.unit.quantity == "counts":
+    if "counts" in (label.kind, label.unit and label.unit.quantity):
         if given.units is None:
             raise counts_need_value(file, label.said)
+        return []
+    if label.unit is None:
         return []
     if label.unit.acceleration is None:
         raise InputError(

@@ -76,7 +76,7 @@ NUMBERS_FIRST = re.compile(
 )
 COMPONENT = re.compile(
     r"\b(?:comp(?:onent[ei]?|onente|\.)?|chan(?:nel)?\.?|cha|dir(?:ection|\.)?|orientation|stream|axis|scnl|azimuth)"
-    r"(?:\s*+#?\d{1,2}+(?=\s*+[:=]))?+\s*+[:=]?+\s*+([^\s,;()]++)",
+    r"(?![A-Za-z])(?:\s*+#?\d{1,2}+(?=\s*+[:=]))?+\s*+[:=]?+\s*+([^\s,;()]++)",
     re.IGNORECASE,
 )
 VERTICAL_PHRASE = re.compile(

@@ -18,7 +18,14 @@ from rockflex.motion._findings import (
     shown_step,
 )
 from rockflex.motion._header import MAX_STEP, MIN_STEP, Header
-from rockflex.motion._record_info import VERTICAL_NAME, Direction, component_azimuth, component_direction
+from rockflex.motion._record_info import (
+    CHANNEL,
+    COMPASS,
+    VERTICAL_NAME,
+    Direction,
+    component_azimuth,
+    component_direction,
+)
 from rockflex.motion._units import AccelerationUnit, Quantity
 
 SUFFIXES: dict[str, Quantity] = {
@@ -45,6 +52,8 @@ NAME_WORDS: dict[str, Quantity] = {
     "spectra": "spectrum",
     "psa": "spectrum",
 }
+# The end of a file's name that says so; a number of three digits is an azimuth.
+HORIZONTAL_ENDING = re.compile(rf"[-_. ](?:{COMPASS}|{CHANNEL}[NE12]|\d{{3}})$", re.IGNORECASE)
 MISSING = re.compile(r"-?9{2,}(?:\.(?:9+|0*))?|-?99\.(?:9{2,}|0*)|-?9999\d*")
 MIN_MISSING = 99.0
 GROUP = (2.0, 1e3)  # times by which the code exceeds the next largest value, at least, and the share of samples
@@ -77,7 +86,8 @@ def settled_quantity(file: Path, words: list[Evidence[Quantity]], header: Header
         named: list[Quantity] = [
             NAME_WORDS[word] for word in re.split(r"[-_. ]", file.stem.lower()) if word in NAME_WORDS
         ]
-        stated += [Evidence(named[-1], f'name of the file "{file.name}"')] if named else []
+        if named:
+            stated.append(Evidence(named[-1], f'name of the file "{file.name}"'))
     others = [each for each in stated if each.value != "acceleration"]
     if others and len(others) == len(stated):
         raise NoAccelerationError(
@@ -170,6 +180,8 @@ def settled_component(file: Path, label: ComponentEvidence | None, header: list[
     by_name = component_direction(file)
     name = stated[0].value if stated else ""
     ways = [Evidence[Direction](_direction(each.value), each.said) for each in stated]
+    if by_name is None and ways and HORIZONTAL_ENDING.search(file.stem):
+        by_name = "horizontal"
     if by_name is not None:
         ways.append(Evidence[Direction](by_name, f'name of the file "{file.name}"'))
     remedy = "Correct the label or the header, or rename the file."

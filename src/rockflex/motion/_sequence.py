@@ -27,6 +27,7 @@ from rockflex.motion._samples import (
 
 # Numbers may be adjacent if the next one begins with a sign; an exponent must then end before the sign.
 TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,;+-]|$)")
+MIN_STATED = 10  # values that a first line may count; a first sample is not the number of all others by chance
 MIN_COLUMNS = 5  # values a line without labels, from which on they are a sequence and not components beside each other
 
 
@@ -84,6 +85,10 @@ def _first_line(found: _text.NumericLines) -> tuple[Header, int, str] | None:
     rows = [content.replace(",", " ").split() for _, content in found.body[:3]]
     following = [len(content.split()) for _, content in found.body]
     one = [[_text.parse_optional_decimal(word) for word in row] for row in rows]
+    if len(one[0]) == 1 and one[0][0] == sum(following[1:]) >= MIN_STATED:
+        line, content = found.body[0]
+        said = quoted_line(line, content)
+        return Header(counts=[Evidence(sum(following[1:]), said)]), 1, said
     for skipped, words in ((1, one[0]), (2, [*one[0], *(one[1] if len(one) > 1 else [])])):
         if len(words) != 2 or None in words or (skipped == 2 and len(one[0]) != 1):
             continue

@@ -255,7 +255,7 @@ def numeric_table(file: Path, found: NumericLines) -> NumericTable:
     separator, commas = _separator_of_quoted(body[0][1]) if '"' in body[0][1] else _cell_separator(body)
     rows: list[tuple[int, list[str]]] = []
     for i, content in body:
-        cells = _cells(content, separator)
+        cells = _cells(content, separator, len(rows[0][1]) if rows else 0)
         if rows and len(cells) != len(rows[0][1]):
             raise InputError(
                 f"{file}, line {i}: expected {number_with_noun(len(rows[0][1]), 'column')} as in line {rows[0][0]}, "
@@ -293,10 +293,11 @@ def _remedy_of_row(content: str) -> str:
     return 'If the values follow each other in lines of any length, say so: layout="sequence".'
 
 
-def _cells(content: str, separator: str | None) -> list[str]:
+def _cells(content: str, separator: str | None, n_columns: int) -> list[str]:
     plain = '"' not in content
     cells = [cell.strip() for cell in content.split(separator)] if plain else _quoted_cells(content, separator)
-    if separator and len(cells) > 1 and cells[-1] == "":
+    # A line may end in a separator; a cell of the first line's columns may be empty.
+    if separator and len(cells) > max(n_columns, 1) and cells[-1] == "":
         cells.pop()
     return cells
 
