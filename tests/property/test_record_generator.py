@@ -1,7 +1,7 @@
 """Files as people write them: each is read right, or refused.
 
 The generator combines spellings of units, places where they stand, separators, columns, ends of lines, encodings and
-steps. A file that states all that is needed must be read; one that does not may be read only if the caller says the rest.
+steps. A file that states all that is needed must be read; another may be read only if the caller says the rest.
 """
 
 import random

@@ -200,7 +200,7 @@ def test_vertical_components(tmp_path, name, head):
     ],
 )
 def test_directions_that_contradict_each_other_are_refused(tmp_path, name, head):
-    with pytest.raises(rf.InputError, match="contradicts itself about the component: .*vertical"):
+    with pytest.raises(rf.InputError, match=r"contradicts itself about the component: .*vertical"):
         rf.read_motion(write(tmp_path, columns(head=head), name))
 
 
@@ -260,7 +260,7 @@ def test_few_columns_without_labels_are_no_sequence(tmp_path):
 
 def test_a_first_line_with_the_step_is_no_sample(tmp_path):
     file = write(tmp_path, column(head="0.01\n"), "record.txt")
-    with pytest.raises(rf.InputError, match="first value, 0.01, is the time step"):
+    with pytest.raises(rf.InputError, match=r"first value, 0\.01, is the time step"):
         rf.read_motion(file, units="g", dt=0.01)
     assert rf.read_motion(file, units="g", dt=0.01, layout="columns").acceleration.size == 61
 
