@@ -1,7 +1,7 @@
 """Files as people write them: each is read right, or refused.
 
 The generator combines spellings of units, places where they stand, separators, columns, ends of lines, encodings and
-steps. A file that states all that is needed must be read; one that does not may be read only if the caller says the rest.
+steps. A file that states all that is needed must be read; another may be read only if the caller says the rest.
 """
 
 import random
@@ -19,7 +19,10 @@ UNITS = {
     "%g": (0.01 * GRAVITY, ["%g", "%G"]),
     "mg": (1e-3 * GRAVITY, ["mg"]),
     "0.1 g": (0.1 * GRAVITY, ["G/10", "G*0.1", "0.1 g"]),
-    "m/s2": (1.0, ["m/s2", "M/S2", "m/s^2", "m/s²", "m/s**2", "m/s/s", "M/SEC/SEC", "m/sec^2", "m s-2", "m·s^-2", "m/(s^2)"]),
+    "m/s2": (
+        1.0,
+        ["m/s2", "M/S2", "m/s^2", "m/s²", "m/s**2", "m/s/s", "M/SEC/SEC", "m/sec^2", "m s-2", "m·s^-2", "m/(s^2)"],
+    ),
     "cm/s2": (0.01, ["cm/s2", "CM/SEC**2", "cm/sec^2", "CM/SEC/SEC", "cm/s/s", "gal", "Gal", "GALS", "cm s^-2"]),
     "mm/s2": (1e-3, ["mm/s2", "mm/sec/sec", "MM/S**2"]),
     "in/s2": (0.0254, ["in/s2", "IN/SEC/SEC", "in/sec^2"]),
@@ -43,7 +46,11 @@ NOISE = [
     "",
 ]
 DECIMALS = {1e-3: 3, 0.002: 3, 0.004: 3, 0.005: 3, 0.01: 2, 0.02: 2, 0.05: 2, 0.008: 3, 1 / 128: 9, 1 / 200: 3}
-STEPS_IN = {"s": (1.0, ["s", "sec", "SEC", "sec.", "seconds"]), "ms": (1e-3, ["ms", "msec"]), "us": (1e-6, ["µs", "us"])}
+STEPS_IN = {
+    "s": (1.0, ["s", "sec", "SEC", "sec.", "seconds"]),
+    "ms": (1e-3, ["ms", "msec"]),
+    "us": (1e-6, ["µs", "us"]),
+}
 
 
 @dataclass
@@ -92,7 +99,14 @@ def _head(pick, written, kind, spelled, name, unit_place, layout):
     word = {"acceleration": "Acceleration", "velocity": "Velocity", "displacement": "Displacement"}[kind]
     upper = pick.choice([str.upper, str.title, str.lower])
     line = {
-        "units line": pick.choice([f"UNITS: {spelled}", f"Units = {spelled}", f"{upper(word)} time series in units of {spelled}", f"unit: ({spelled})"]),
+        "units line": pick.choice(
+            [
+                f"UNITS: {spelled}",
+                f"Units = {spelled}",
+                f"{upper(word)} time series in units of {spelled}",
+                f"unit: ({spelled})",
+            ]
+        ),
         "bracket line": pick.choice([f"{upper(word)} ({spelled})", f"{word} [{spelled}], corrected"]),
         "in line": f"{upper(word)} IN {spelled}",
     }.get(unit_place)
@@ -105,7 +119,10 @@ def _head(pick, written, kind, spelled, name, unit_place, layout):
         written.arguments["units"] = name
     written.stated = written.stated and unit_place != "nowhere"
     if written.vertical is not None and pick.random() < 0.6 and layout != "pair":
-        lines.insert(pick.randrange(len(lines) + 1), f"{pick.choice(['Component: ', 'Component ', 'COMP='])}{_axis(pick, written.vertical)}")
+        lines.insert(
+            pick.randrange(len(lines) + 1),
+            f"{pick.choice(['Component: ', 'Component ', 'COMP='])}{_axis(pick, written.vertical)}",
+        )
     else:
         written.vertical = None
     return lines
@@ -148,7 +165,9 @@ def _add_rows(pick, written, lines, values, unit, kind, layout):
             written.parts = [*comment, f"{size} {dt:.12g}", *rows]
             return
         plain = [line.removeprefix(mark) for line in comment]
-        stated = pick.choice([f"NPTS= {size}, DT= {dt:.9g} SEC", f"NPTS = {size} , DT = {dt:.9g} SEC", f"{size} {dt:.9g} NPTS, DT"])
+        stated = pick.choice(
+            [f"NPTS= {size}, DT= {dt:.9g} SEC", f"NPTS = {size} , DT = {dt:.9g} SEC", f"{size} {dt:.9g} NPTS, DT"]
+        )
         place = pick.choice([len(plain), len(plain), 0])
         plain.insert(place, stated)
         if place == 0 and len(plain) > 1:
@@ -159,11 +178,19 @@ def _add_rows(pick, written, lines, values, unit, kind, layout):
     separator = pick.choice([",", ";", "\t", " ", "  ", ", "])
     comma = separator not in (",", ", ") and pick.random() < 0.3
     quoted = separator in (",", ";") and pick.random() < 0.2
-    label = {"acceleration": ["acc", "a", "Acceleration", "accel"], "velocity": ["vel", "Velocity"], "displacement": ["disp", "Displacement"]}[kind]
+    label = {
+        "acceleration": ["acc", "a", "Acceleration", "accel"],
+        "velocity": ["vel", "Velocity"],
+        "displacement": ["disp", "Displacement"],
+    }[kind]
     word = pick.choice(label)
     if separator.strip() == "" and " " in unit:
         unit = unit.replace(" ", "")
-    named = pick.choice([f"{word} ({unit})", f"{word} [{unit}]", f"{word}({unit})"]) if unit else pick.choice(label if kind == "acceleration" else [word])
+    named = (
+        pick.choice([f"{word} ({unit})", f"{word} [{unit}]", f"{word}({unit})"])
+        if unit
+        else pick.choice(label if kind == "acceleration" else [word])
+    )
     named = named if named != "a" or kind != "acceleration" else "acc"
     columns, labels = [numbers], [named]
     if layout == "pair":
@@ -181,7 +208,14 @@ def _add_rows(pick, written, lines, values, unit, kind, layout):
     else:
         labels, columns = _with_times(pick, written, labels, columns)
     has_label = bool(unit) or layout == "pair" or pick.random() < 0.6 or kind != "acceleration"
-    if not has_label and labels and labels[0] and not written.arguments.get("dt") and labels[0].strip().lower() != "time (s)" and layout != "one":
+    if (
+        not has_label
+        and labels
+        and labels[0]
+        and not written.arguments.get("dt")
+        and labels[0].strip().lower() != "time (s)"
+        and layout != "one"
+    ):
         has_label = True
     rows = [list(row) for row in zip(*columns, strict=True)]
     if comma:
@@ -203,7 +237,10 @@ def _with_times(pick, written, labels, columns):
     if form == "s":
         return [pick.choice(["time (s)", "t [s]", "Time [sec]", "time", "t"]), *labels], [times, *columns]
     if form == "ms":
-        return [pick.choice(["time (ms)", "t_ms", "t [msec]"]), *labels], [[f"{1e3 * (begin + k * dt):.6f}" for k in range(size)], *columns]
+        return [pick.choice(["time (ms)", "t_ms", "t [msec]"]), *labels], [
+            [f"{1e3 * (begin + k * dt):.6f}" for k in range(size)],
+            *columns,
+        ]
     if pick.random() < 0.5:
         written.arguments["dt"] = dt
     else:
@@ -229,7 +266,9 @@ def outcome(written: Written, folder) -> str:
         return f"wrong: step {motion.dt}"
     if motion.acceleration.size != written.acceleration.size:
         return f"wrong: {motion.acceleration.size} samples"
-    if not np.allclose(motion.acceleration, written.acceleration, rtol=1e-5, atol=1e-6 * np.abs(written.acceleration).max()):
+    if not np.allclose(
+        motion.acceleration, written.acceleration, rtol=1e-5, atol=1e-6 * np.abs(written.acceleration).max()
+    ):
         return f"wrong: peak {motion.pga} for {np.abs(written.acceleration).max()}"
     if written.vertical is not None and motion.metadata.is_vertical != written.vertical:
         return f"wrong: {motion.metadata.direction} for vertical={written.vertical}"

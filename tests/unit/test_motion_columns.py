@@ -125,7 +125,7 @@ def rows(*lines):
         (rows("0 1", "0.1 2"), "has 2 samples, but a record needs at least 3"),
         (rows("0 1 2", "1 1 2", "2 1 2"), "has 3 columns, and its header does not name one as time"),
         (rows("t,acc,acc", "0,1,2", "1,1,2", "2,1,2"), 'at least one as acceleration .* "acc NS \\(g\\), acc EW'),
-        (rows("t,acc x,acc y", "0,1,2", "0.1,1,2", "0.2,1,2"), r"holds 2 components: 'x', 'y'\. Name one: .*component='x'"),
+        (rows("t,acc x,acc y", "0,1,2", "0.1,1,2", "0.2,1,2"), r"components: 'x', 'y'\. Name one: .*component='x'"),
         (rows("t,vel", "0,1", "1,1", "2,2"), "an acceleration is expected, but the column is labelled 'vel'"),
         (rows("t (turns),acc", "0,1", "1,1", "2,2"), "times are in 'turns', but seconds are expected"),
         (rows("no", "numbers"), "holds no numbers"),
@@ -200,9 +200,9 @@ def test_labels_between_tabs_may_hold_blanks(tmp_path):
 @pytest.mark.parametrize("line", ["units: cm/s^2", "# Units = gal", "% made by hand; unit: (cm/s/s)"])
 def test_units_from_a_line_above(tmp_path, line):
     assert read_motion(write(tmp_path, table(",", f"{line}\ntime,acc\n"))).pga == pytest.approx(0.003)
-    with pytest.raises(InputError, match="the unit is cm/s2 .*line 1.*, but units='g' was given"):
+    with pytest.raises(InputError, match=r"the unit is cm/s2 .*line 1.*, but units='g' was given"):
         read_motion(write(tmp_path, table(",", f"{line}\n")), units="g")
-    with pytest.raises(InputError, match="holds counts of a recorder by its line 1.*value of one count"):
+    with pytest.raises(InputError, match=r"holds counts of a recorder by its line 1.*value of one count"):
         read_motion(write(tmp_path, table(",", "units: counts\n")))
     both = write(tmp_path, table(",", f"{line}\ntime,acc (g)\n"))
     with pytest.raises(InputError, match=r"contradicts itself about the unit: g \(label.*\), but cm/s2 \(line 1"):
@@ -242,7 +242,8 @@ def test_units_that_are_none(tmp_path, units):
 
 
 def test_components_in_columns(tmp_path):
-    text = "time (s),acc_N38E (g),acc S52E (g),vertical (g)\n" + "".join(f"{k / 10},{k - 1},{2 * k},3\n" for k in range(3))
+    rows = "".join(f"{k / 10},{k - 1},{2 * k},3\n" for k in range(3))
+    text = "time (s),acc_N38E (g),acc S52E (g),vertical (g)\n" + rows
     found = read_components(write(tmp_path, text))
     assert [motion.name for motion in found] == ["record-N38E", "record-S52E", "record-vertical"]
     assert [motion.metadata.azimuth for motion in found] == [38.0, 128.0, None]

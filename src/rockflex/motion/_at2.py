@@ -10,13 +10,13 @@ from rockflex.motion import _text
 from rockflex.motion._declared import Declared
 from rockflex.motion._findings import Finding, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._header import header_of_lines
+from rockflex.motion._header import MAX_LINE, NUMBERS_FIRST, header_of_lines
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
 from rockflex.motion._sequence import Sequence, motion_of_sequence, numbers_in_lines
 
 HEADER_LINES = 12
-NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
-DT = re.compile(r"\bDT\b", re.IGNORECASE)
+NPTS = re.compile(r"\bNPTS\s*+[=:]\s*+\d", re.IGNORECASE)
+DT = re.compile(r"\bDT\s*+[=:]\s*+[+-]?+[.\d]", re.IGNORECASE)
 TEXT = re.compile(r"\s*+[#%!]?+\s*+[A-Za-z][A-Za-z]")
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
 FIRST_RECORDS = (
@@ -71,8 +71,9 @@ def at2_header_end(lines: list[str]) -> int | None:
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
             continue  # a comment in a plain text file, whose values may stand in columns
-        npts, dt = npts or NPTS.search(line[:500]) is not None, dt or DT.search(line[:500]) is not None
-        if npts and dt:
+        begin = line[:MAX_LINE]
+        npts, dt = npts or NPTS.search(begin) is not None, dt or DT.search(begin) is not None
+        if (npts and dt) or NUMBERS_FIRST.match(begin):
             end = i + 1
             break
     else:

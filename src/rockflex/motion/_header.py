@@ -12,6 +12,7 @@ from rockflex.motion._record_info import VERTICAL_NAME, component_azimuth, is_ho
 from rockflex.motion._units import BRACKET, TIMES, AccelerationUnit, Quantity, Unit, end_of_last_bracket, parse_unit
 
 Lines = Sequence[tuple[int, str]]
+MAX_LINES = 500  # above the numbers that are looked at
 MAX_LINE = 500  # characters of a line that are looked at
 # A line about one value of the record, or of the instrument, says nothing about the unit of the samples.
 ABOUT_A_VALUE = re.compile(
@@ -102,7 +103,7 @@ class Header:
 def header_of_lines(file: Path, lines: Lines) -> Header:
     """Return what the lines above the numbers say; `lines` are pairs of a line's number and its text."""
     found = Header()
-    for number, text in lines:
+    for number, text in lines[:MAX_LINES]:
         line = text[:MAX_LINE].strip().lstrip("#%!*/; \t")
         if not line:
             continue

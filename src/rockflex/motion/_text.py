@@ -317,7 +317,7 @@ def _cell_separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
     """Return the character between cells (None for blanks), and whether decimals are marked by commas."""
     first = body[0][1]
     if ";" in first:
-        return ";", any("," in content for _, content in body)
+        return ";", any("," in content and not THOUSANDS.search(content) for _, content in body)
     if "," not in first:
         # A column of decimals may begin with whole numbers: 0, 0,01, 0,02.
         some = next((content for _, content in body if "," in content), None)
