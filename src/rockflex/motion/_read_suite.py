@@ -168,7 +168,11 @@ def read_suite(
 
     A record that two files hold, under different names or in different formats, is taken once, from the file that says
     more of it: if the steps and the samples (50 and more) are the same within 0.1 % of the peak, unless record sequence
-    numbers, azimuths or names (ABC000, ABC090) say that they are different components.
+    numbers, azimuths or names (ABC000, ABC090) say that they are different components. Of an uncorrected and a
+    corrected record of one component (CE36456.V1, CE36456.V2), the corrected one is taken.
+
+    What is no record beside records is left out with a warning: velocities, displacements, spectra, texts and tables of
+    something else. A record that cannot be read is an error.
 
     Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them; with
     ``vertical="pair"`` each horizontal component gets the vertical one of its station. The direction of a record is
@@ -177,9 +181,9 @@ def read_suite(
     Parameters
     ----------
     paths : path or iterable of paths
-        A directory, in which every file is read whose suffix is that of a record (.at2, .csv, .dat, .tsv, .txt, .xlsx,
-        .mseed and the like, in any case) or whose content begins as a K-NET, ESM, COSMOS or GeoNet file; or the files
-        themselves.
+        A directory, in which every file is read whose suffix is that of a record (.at2, .acc, .csv, .dat, .tsv, .txt,
+        .xlsx, .mseed and the like, in any case), whose content begins as a file of a network (see `FORMATS`), or whose
+        header names an acceleration above rows of numbers; or the files themselves.
     units, dt : optional
         As in `read_motion`, for files that do not state them. A dictionary gives the units of files by their names, in
         which ``*`` and ``?`` stand for other characters: ``{"lab-*.txt": "g", "old.csv": "cm/s2"}``.
@@ -210,9 +214,10 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        If a vertical component, a borehole component beneath one at the surface (KiK-net), a copy of another record, or
-        a file that cannot be read is left out, a record has no vertical component although `vertical` is "pair", or a
-        peak differs by 1 to 20 % from that in the header.
+        If a vertical component, a borehole component beneath one at the surface (KiK-net), a copy of another record, an
+        uncorrected one beside a corrected one, a file without an acceleration or one that cannot be read is left out; a
+        file, archive or folder in the directory is not looked into; a record has no vertical component although
+        `vertical` is "pair"; or a peak differs by 1 to 20 % from that in the header.
 
     Examples
     --------
