@@ -368,8 +368,8 @@ def test_survey(folder_survey):
     ]  # fmt: skip
     assert {left[name] for name in ("CE13921.V2c", "MYG002.UD", "RSN9001_SOME_ABC-UP.AT2")} == {"vertical component"}
     assert "table about the records; it lists 2 files that are not there: RSN9002_" in left["_SearchResults.csv"]
-    assert left["lab.csv"].startswith("lab.csv does not state the unit of its acceleration")
-    assert left["notes.txt"].startswith("notes.txt holds no numbers")
+    assert left["lab.csv"].startswith("does not state the unit of its acceleration")
+    assert left["notes.txt"].startswith("holds no numbers")
     assert left["readme.md"] == left[".hidden.txt"] == "no record, by suffix and beginning"
     told = {entry.file: entry.reason for entry in survey.taken if entry.reason}
     assert list(told) == ["IT.NRC.HNE.ASC"]
