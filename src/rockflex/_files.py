@@ -1,5 +1,6 @@
-"""Checks of paths, and atomic writing of files that survive a loss of power."""
+"""Checks of paths, the text in files, and atomic writing of files that survive a loss of power."""
 
+import codecs
 import os
 import stat
 from collections.abc import Generator
@@ -67,6 +68,23 @@ def check_regular_file(path: Path, name: str = "") -> None:
             f"{name}{': ' * bool(name)}{path} is {kind}, but a regular file is expected. {remedy}",
             field=name or None,
         )
+
+
+def unicode_text(content: bytes) -> str:
+    """Return the text in the bytes of a file: UTF-8, or UTF-16, as some editors save it, with any byte-order mark.
+
+    Ends of lines become line feeds.
+
+    Raises
+    ------
+    UnicodeDecodeError
+        If it is in another encoding.
+    """
+    wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    # Without a mark: the first character of a text that is not of another script has a byte of zero.
+    little, big = content[1:2] == b"\0", content[:1] == b"\0"
+    encoding = "utf-16" if wide else "utf-16-le" if little else "utf-16-be" if big else "utf-8-sig"
+    return content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def write_file_atomically(path: Path, content: bytes) -> Path:

@@ -309,8 +309,23 @@ def test_table_and_reasons(folder):
     result = invoke_survey(folder)
     assert result.exit_code == 0
     rows = [line.split() for line in result.stdout.splitlines()]
-    assert ["RSN7_A090.AT2", "AT2", "Some", "Station", "90", "yes", "0.1", "3", "0.1000", "6.5", "12.5", "360"] in rows
-    assert ["MYG002.EW", "K-NET", "MYG002", "E-W", "yes", "0.1", "10", "0.0001551", "5.7", "-", "-"] in rows
+    assert [
+        "RSN7_A090.AT2",
+        "AT2",
+        "Some",
+        "Station",
+        "90",
+        "g",
+        "yes",
+        "0.1",
+        "3",
+        "0.1000",
+        "6.5",
+        "12.5",
+        "360",
+    ] in rows
+    knet_row = next(row for row in rows if row[:4] == ["MYG002.EW", "K-NET", "MYG002", "E-W"])
+    assert knet_row[-7:] == ["yes", "0.1", "10", "0.0001551", "5.7", "-", "-"]
     assert (
         "3 taken, 3 left out; 2 recordings: 1 with a horizontal pair, 1 with a vertical component, 1 with both"
         in result.stdout
@@ -321,6 +336,21 @@ def test_table_and_reasons(folder):
     paired = invoke_survey(folder, "--vertical", "pair").stdout
     assert "4 taken, 2 left out" in paired
     assert "Taken, but:\n  MYG002.EW: without a vertical component\n" in paired
+
+
+def test_what_says_so_is_told_once_for_all_files_of_which_it_is_true(tmp_path):
+    for k in range(9):
+        (tmp_path / f"lab-{k}.csv").write_text(f"time (s),acc (g)\n0,0\n0.01,0.{k + 1}\n0.02,0\n")
+    (tmp_path / "old.txt").write_text("units: cm/s2\ndt = 0.005 s\n0\n1\n0\n1\n")
+    said = [" ".join(line.split()) for line in invoke_survey(tmp_path).stdout.partition("As read:")[2].splitlines()]
+    some = "lab-0.csv, lab-1.csv, lab-2.csv, lab-3.csv, lab-4.csv, lab-5.csv and 3 more"
+    assert f'unit g label "acc (g)" {some}' in said
+    assert f'time step 0.01 s column "time (s)" {some}' in said
+    assert 'unit cm/s2 line 1: "units: cm/s2" old.txt' in said
+    assert 'time step 0.005 s line 2: "dt = 0.005 s" old.txt' in said
+    (tmp_path / "old.txt").unlink()
+    said = [" ".join(line.split()) for line in invoke_survey(tmp_path).stdout.splitlines()]
+    assert 'unit g label "acc (g)" all 9' in said
 
 
 def test_many_files_of_one_reason_are_counted(tmp_path):
@@ -336,6 +366,7 @@ def test_json(folder):
     assert len(found["entries"]) == 6
     entry = next(each for each in found["entries"] if each["file"] == "RSN7_A180.AT2")
     assert (entry["taken"], entry["magnitude"], entry["pga"]) == (True, 6.5, 0.1 * 9.81)
+    assert {"what": "unit", "value": "g", "evidence": 'line 2: "ACCELERATION IN UNITS OF G"'} in entry["findings"]
     assert found["stations"] == [
         {"name": "NIED MYG002 2006-01-18 23:25", "horizontal": ["MYG002-EW"], "vertical": None},
         {"name": "RSN7", "horizontal": ["RSN7_A090", "RSN7_A180"], "vertical": "RSN7_A-UP"},

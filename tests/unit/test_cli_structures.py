@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import rockflex as rf
 from builders import PROPERTIES, frame_values
 from rockflex import Eccentric, Frame, InputError, read_structure
 from rockflex.cli._structures import describe_rocking_properties, load_structure, split_structure_file_argument
@@ -224,6 +225,18 @@ def test_not_toml(failing, tmp_path):
     binary.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="is not a valid TOML file: "):
         load_structure(binary, NO_FLAGS)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+def test_encodings_of_windows(tmp_path, encoding):
+    text = "# Außenmaße\r\n" + toml(FRAME).replace("\n", "\r\n")
+    (tmp_path / "a.toml").write_bytes(text.encode(encoding))
+    plain = tmp_path / "b.toml"
+    plain.write_text(toml(FRAME))
+    assert rf.read_structure(tmp_path / "a.toml") == rf.read_structure(plain)
+    (tmp_path / "a.toml").write_bytes(text.encode("latin-1"))
+    with pytest.raises(InputError, match=r"is not a valid TOML file: .* Save it as UTF-8\."):
+        load_structure(tmp_path / "a.toml", NO_FLAGS)
 
 
 def test_file_that_cannot_be_read(tmp_path):

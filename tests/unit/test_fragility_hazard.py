@@ -205,6 +205,62 @@ def test_an_export_becomes_rates_of_measures_in_si_units(export):
     np.testing.assert_allclose(velocity.im, 0.01 * np.array([0.005, 0.1, 0.4, 2.0]), rtol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("head", "unit"),
+    [
+        ("# kind=mean, investigation_time=50.0, imt=PGA\n", 9.81),
+        ("# investigation_time=50.0, imt=SA(0.2), kind=mean\n", 9.81),
+        ("\ufeff# source_model_tree_path=('b1',), investigation_time=50.0,imt=\"PGV\"\n", 0.01),
+    ],
+)
+def test_exports_of_older_versions(export, head, unit):
+    typed = ROWS.replace("lat,", "lat:float32,").replace("2.0000000\n", "2.0000000:float32\n")
+    curve = HazardCurve.from_openquake_csv(export(head + typed), site=(8.54, 47.38))
+    np.testing.assert_allclose(curve.im, unit * np.array([0.005, 0.1, 0.4, 2.0]), rtol=1e-15)
+    np.testing.assert_allclose(curve.rate, -np.log1p([-0.999, -0.3, -0.05, -1e-4]) / 50.0, rtol=1e-14)
+
+
+NRML = """<?xml version="1.0" encoding="UTF-8"?>
+<nrml xmlns:gml="http://www.opengis.net/gml" xmlns="http://openquake.org/xmlns/nrml/0.5">
+  <hazardCurves statistics="mean" investigationTime="50.0" IMT="SA" saPeriod="0.2" saDamping="2.0">
+    <IMLs>0.1 0.4 2.0</IMLs>
+    <hazardCurve><gml:Point><gml:pos>7.59 47.56</gml:pos></gml:Point><poEs>0.4 0.1 0.0</poEs></hazardCurve>
+    <hazardCurve><gml:Point><gml:pos>8.54 47.38</gml:pos></gml:Point><poEs>0.3 0.05 0.0001</poEs></hazardCurve>
+  </hazardCurves>
+</nrml>
+"""
+
+
+def test_curves_in_nrml(export):
+    curve = HazardCurve.from_openquake_csv(export(NRML), site=(8.54, 47.38))
+    np.testing.assert_allclose(curve.im, 9.81 * np.array([0.1, 0.4, 2.0]), rtol=1e-15)
+    np.testing.assert_allclose(curve.rate, -np.log1p([-0.3, -0.05, -1e-4]) / 50.0, rtol=1e-14)
+    assert curve.damping == 0.02
+    alone = """<nrml><hazardCurves IMT="PGA" investigationTime="1"><hazardCurve>
+        <IMLs>0.1 0.4</IMLs><poEs>0.3 0.05</poEs></hazardCurve></hazardCurves></nrml>"""
+    curve = HazardCurve.from_openquake_csv(export(alone))
+    np.testing.assert_allclose(curve.rate, -np.log1p([-0.3, -0.05]), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (NRML, "has 2 sites. Choose one with site="),
+        (NRML.replace("</nrml>", ""), "is no valid XML"),
+        (NRML.replace("hazardCurves", "hazardMap"), "hold the hazard curves of one intensity measure"),
+        (NRML.replace('IMT="SA"', 'IMT="MMI"').replace("8.54 47.38", "7.59 47.56"), "has 2 sites"),
+        (NRML.replace(' investigationTime="50.0"', ""), "'' stands where a number is expected"),
+        (NRML.replace("0.4 0.1 0.0", "0.4 0.1"), "a row of 5 values for each site, but 1 row differs"),
+        ('<?xml version="1.0"?><!DOCTYPE n [<!ENTITY a "b">]><nrml>&a;</nrml>', "declares entities"),
+    ],
+)
+def test_nrml_is_checked(export, text, said):
+    with pytest.raises(InputError) as refused:
+        HazardCurve.from_openquake_csv(export(text))
+    assert said in str(refused.value)
+    assert refused.value.field in ("path", "site")
+
+
 def test_points_without_a_rate_are_left_out(export):
     curve = HazardCurve.from_openquake_csv(export(OLD + ROWS), site=(7.59, 47.56))
     np.testing.assert_allclose(curve.im, [0.981, 3.924], rtol=1e-15)

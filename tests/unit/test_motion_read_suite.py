@@ -1,5 +1,8 @@
 """Many record files: suites, surveys, and tables about records."""
 
+import ast
+import re
+
 import numpy as np
 import pytest
 
@@ -50,13 +53,14 @@ def test_read_suite_reads_a_directory(tmp_path):
     with pytest.raises(InputError, match=r"c\.txt does not state the unit"):
         read_suite(tmp_path)
     (tmp_path / "c.txt").unlink()
-    whole = read_suite(str(tmp_path))
+    with pytest.warns(RecordWarning, match=r"Not tried, no records by suffix and beginning: readme\.md\.$"):
+        whole = read_suite(str(tmp_path))
     assert (whole.names, whole.name) == (("a", "b"), tmp_path.name)
     assert read_suite(iter([tmp_path / "b.csv"])).names == ("b",)
 
 
 def test_read_suite_refuses(tmp_path):
-    with pytest.raises(InputError, match=r"no file ends in .at2.* in one of the formats K-NET, ESM, COSMOS, GeoNet\."):
+    with pytest.raises(InputError, match=r"no file ends in .at2.*in one of the formats K-NET, ESM, "):
         read_suite(tmp_path)
     with pytest.raises(InputError, match=r"is not a directory. Give a directory or a list of files"):
         read_suite(tmp_path / "none")
@@ -83,15 +87,18 @@ def test_vertical_components_are_left_out_and_named(folder):
 
 
 def test_all_files_that_cannot_be_read_are_named_at_once(folder):
-    both = r"2 of 6 files cannot be read\. \S*RSN3_X_GHI000\.AT2 is truncated: .* \S*_Search\S* holds no numbers.*"
+    (folder / "lab.txt").write_text("0\n0.5\n0\n")
+    both = r"2 of 7 files cannot be read\. \S*RSN3_X_GHI000\.AT2 is truncated: .* \S*lab\.txt does not state the unit.*"
     with pytest.raises(InputError, match=both + r'on_error="skip" continues with the other files\.$'):
         read_suite(folder)
     with pytest.warns(RecordWarning) as caught:
         suite = read_suite(folder, on_error="skip")
     assert suite.names == ("RSN1_X_ABC000", "RSN1_X_ABC090")
-    assert len(caught) == 2
-    assert caught[0].message.args[0].startswith("Left out: 2 of 6 files cannot be read. ")
-    assert caught[1].message.args[0].startswith("Left out: 2 vertical components, ")
+    assert [str(each.message)[:40] for each in caught] == [
+        "Left out: 2 of 7 files cannot be read. /",
+        "Left out: 1 file without an acceleration",
+        "Left out: 2 vertical components, RSN1_X_",
+    ]
 
 
 def test_of_many_faults_the_first_are_told_and_all_files_named(tmp_path):
@@ -105,6 +112,209 @@ def test_of_many_faults_the_first_are_told_and_all_files_named(tmp_path):
     assert text.count("no header line with NPTS and DT") == 10
     assert all(text.count(f"r{place:02}.at2") == 1 for place in range(13))
     assert "The others: " in text
+
+
+COLUMNS = "time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0.05\n0.03,0\n"
+BARE = "0 0\n0.01 0.1\n0.02 0.05\n0.03 0\n"
+NO_RECORDS = {
+    "A000.VT2": ("velocity", at2("0").replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")),
+    "A000.DT2": ("displacement", at2("0").replace("ACCELERATION", "DISPLACEMENT").replace("OF G", "OF CM")),
+    "bare.vel": ("velocity", BARE),
+    "vel.csv": ("velocity", COLUMNS.replace("acc (g)", "vel (m/s)")),
+    "disp.txt": ("displacement", COLUMNS.replace("acc (g)", "disp (cm)")),
+    "target.csv": ("spectrum", "Period (s),Sa (g)\n0,0.3\n0.1,0.75\n0.2,0.75\n1,0.3\n"),
+    "readme.txt": ("no numbers", "How to cite\n1. Acceleration in g\n2. Velocity in cm/s\n"),
+    "year.txt": ("text", "Downloaded in\n2022\nfrom the archive, with NPTS and DT in the header\n"),
+    "stories.csv": ("table", "story;drift;PFA\n1;0.01;0.2\n2;0.02;0.3\n3;0.015;0.4\n"),
+    "sites.csv": ("no numbers", "name,country\nNRC,Italy\nACC,Italy\n"),
+    "roof.disp": ("displacement", "".join(f"{0.01 * k} 0 1 2 3 4\n" for k in range(9))),
+}
+
+
+@pytest.fixture
+def mixed(tmp_path):
+    """A record, and files beside it that hold something else."""
+    folder = tmp_path / "mixed"
+    folder.mkdir()
+    (folder / "A000.AT2").write_text(at2("0"))
+    for name, (_, text) in NO_RECORDS.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize("name", NO_RECORDS)
+def test_what_is_no_record_is_left_out_with_a_word(mixed, name):
+    what, _ = NO_RECORDS[name]
+    with pytest.warns(
+        RecordWarning, match=rf"^Left out: 1 file without an acceleration, {name} \({what}\)\.$"
+    ) as caught:
+        assert read_suite([mixed / "A000.AT2", mixed / name]).names == ("A000",)
+    assert [each.filename for each in caught] == [__file__]
+    (entry,) = rf.survey_records([mixed / "A000.AT2", mixed / name]).left_out
+    assert (entry.file, entry.findings) == (name, ())
+    with pytest.raises(InputError, match=name):
+        read_suite([mixed / name])
+
+
+def test_of_files_without_an_acceleration_all_are_named(mixed):
+    with pytest.warns(RecordWarning, match="Left out: 11 files without an acceleration, ") as caught:
+        assert read_suite(mixed).names == ("A000",)
+    assert len(caught) == 1
+    (mixed / "A000.AT2").unlink()
+    with pytest.raises(
+        InputError, match=r"^No record was given, only 11 files .*vel\.csv \(velocity\).*Give the files of"
+    ):
+        read_suite(mixed)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("B.AT2", "NPTS= 9, DT= .1\n0 1 0\n", "truncated"),
+        ("B.AT2", "<html>Not found</html>\n", "no header line"),
+        ("lab.txt", BARE, "does not state the unit"),
+        ("lab.csv", COLUMNS.replace(" (g)", ""), "does not state the unit"),
+        ("lab.csv", COLUMNS.replace("acc (g)", "channel 1"), "does not state the unit"),
+        ("rec.th", COLUMNS + "0.04,x\n", "line 6"),
+        ("empty.txt", "", "is empty"),
+    ],
+)
+def test_a_record_that_cannot_be_read_is_an_error_beside_others(mixed, name, text, words):
+    (mixed / name).write_text(text)
+    with pytest.raises(InputError, match=rf"1 of 13 files cannot be read\. .*{words}"):
+        read_suite(mixed)
+    with pytest.warns(RecordWarning) as caught:
+        assert read_suite(mixed, on_error="skip").names == ("A000",)
+    assert re.match(rf"Left out: 1 of 13 files cannot be read\..*{words}", str(caught[0].message))
+
+
+def test_files_of_any_suffix_are_read_if_they_name_an_acceleration(tmp_path):
+    for k, name in enumerate(("a.acc", "b.asc", "c.prn", "d.out", "e.V2", "f.at2.bak", "g")):
+        (tmp_path / name).write_text(COLUMNS.replace("0.05", f"0.0{k}"))
+    (tmp_path / "h.th").write_text("ACCELERATION TIME SERIES\nNPTS= 6, DT= 0.01\nunits: g\n0 0.1\n0.2 0.1\n0.1 0\n")
+    (tmp_path / "i.unknown").write_bytes(COLUMNS.encode("utf-16"))
+    others = {
+        "disp.out": BARE,
+        "photo.png": "\x89PNG\x00\x01",
+        "readme.md": "Records of accelerations in g\n",
+        "matrix.mtx": "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 1\n1 2 1\n2 2 1\n",
+    }
+    for name, text in others.items():
+        (tmp_path / name).write_text(text)
+    with pytest.warns(
+        RecordWarning, match=r"^Not tried.*: disp\.out, matrix\.mtx, photo\.png, readme\.md\.$"
+    ) as caught:
+        suite = read_suite(tmp_path)
+    assert suite.names == ("a", "b", "c", "d", "e", "f.at2", "g", "h", "i")
+    assert len(caught) == 1
+    left = {entry.file: entry.reason for entry in rf.survey_records(tmp_path).left_out}
+    assert left == dict.fromkeys(others, "no record, by suffix and beginning")
+
+
+def test_folders_and_archives_within_a_folder_are_said(tmp_path):
+    (tmp_path / "a.csv").write_text(COLUMNS)
+    for name in ("raw/b.csv", "raw/deep/c.csv", "raw/.d", ".git/config", "__MACOSX/._a.csv"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(COLUMNS)
+    (tmp_path / "empty").mkdir()
+    for name in ("more.zip", "b.csv.gz", "Thumbs.db", ".DS_Store", "~$book.xlsx", "desktop.ini"):
+        (tmp_path / name).write_bytes(b"PK\3\4")
+    with pytest.warns(RecordWarning) as caught:
+        assert read_suite(tmp_path).names == ("a",)
+    entered, unpacked = (str(each.message) for each in caught)
+    assert entered.startswith("Not entered: the folder raw with 2 files.")
+    assert f"read_suite('{(tmp_path / 'raw').as_posix()}')" in entered
+    assert unpacked.startswith("Not unpacked: b.csv.gz, more.zip.")
+    left = {entry.file: entry.reason for entry in rf.survey_records(tmp_path).left_out}
+    assert left["raw/"] == "a folder with 2 files, which was not entered"
+    assert left["more.zip"] == "an archive, which was not unpacked"
+    assert left["Thumbs.db"] == "no record, by suffix and beginning"
+    (tmp_path / "a.csv").unlink()
+    with pytest.raises(
+        InputError, match=r"holds no record: .*the folder raw with 2 files\. .*Not unpacked: b\.csv\.gz"
+    ):
+        read_suite(tmp_path)
+
+
+def toy_format():
+    """A format whose first line is the metadata of a record, as Python."""
+
+    def parse(file, lines):
+        info = rf.RecordInfo(source=file.name, source_format="toy", **ast.literal_eval(lines[0].partition(" ")[2]))
+        return [rf.GroundMotion([0.0, float(lines[1]), 0.0], 0.01, file.stem, info)]
+
+    return rf.motion.RecordFormat("toy", lambda lines: lines[0].startswith("toy "), parse)
+
+
+RAW = {"station": "AAA", "network": "X", "component": "HNE", "start_time": "2020-01-01T00:00:00"}
+RAW["processing"] = "uncorrected"
+
+
+@pytest.mark.parametrize(
+    ("raw", "other", "twice"),
+    [
+        ({}, {}, False),
+        ({}, {"start_time": "2020-01-01T00:00:20"}, False),
+        ({}, {"network": None, "location": "00"}, False),
+        ({"azimuth": 359.5}, {"azimuth": 0.0, "component": "NS"}, False),
+        ({"start_time": None, "event_id": "E1"}, {"start_time": None, "event_id": "e1"}, False),
+        ({"start_time": None, "event": "Kobe"}, {"start_time": "2020-01-01T00:00:00+00:00", "event": "Kobe"}, False),
+        ({}, {"start_time": "2020-01-01T00:10:00"}, True),
+        ({}, {"station": "BBB"}, True),
+        ({"location": "surface"}, {"location": "borehole"}, True),
+        ({}, {"component": "HNN"}, True),
+        ({}, {"component": "HNZ", "direction": "vertical"}, True),
+        ({"azimuth": 0.0}, {"azimuth": 90.0}, True),
+        ({"start_time": None}, {"start_time": None}, True),
+        ({"processing": None}, {}, True),
+        ({}, {"processing": "uncorrected, mean subtracted"}, True),
+    ],
+)
+def test_of_an_uncorrected_and_a_corrected_record_the_corrected_one_is_taken(tmp_path, monkeypatch, raw, other, twice):
+    monkeypatch.setitem(rf.motion.FORMATS, "toy", toy_format())
+    (tmp_path / "raw.x").write_text(f"toy {RAW | raw}\n1.0\n")
+    (tmp_path / "cut.x").write_text(f"toy {RAW | {'processing': 'baseline corrected'} | other}\n1.1\n")
+    survey = rf.survey_records(tmp_path, vertical="pair" if other.get("direction") else None)
+    left = {entry.file: entry.reason for entry in survey.left_out}
+    if twice:
+        assert not any("uncorrected" in reason for reason in left.values())
+        return
+    assert left == {"raw.x": "uncorrected; cut.x is the corrected record"}
+    assert [len(each.horizontal) for each in survey.stations] == [1]
+    with pytest.warns(
+        RecordWarning, match=r"Left out: 1 uncorrected record beside corrected ones, raw\.x \(of cut\.x\)"
+    ):
+        assert read_suite(tmp_path).names == ("cut",)
+
+
+def test_suffixes_tell_uncorrected_records_from_corrected_ones(tmp_path):
+    for name, peak in (("AAA090.V1", 0.1), ("AAA090.V2", 0.09), ("BBB090.V1", 0.1), ("AAA180.v1c", 0.1)):
+        (tmp_path / name).write_text(COLUMNS.replace("0.1", str(peak)))
+    with pytest.warns(RecordWarning, match=r"1 uncorrected record beside corrected ones, AAA090\.V1 \(of AAA090\.V2\)"):
+        suite = read_suite(tmp_path)
+    assert suite.names == ("AAA090", "AAA180", "BBB090")
+    assert suite["AAA090"].pga == 0.09 * GRAVITY
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("b.csv", COLUMNS.replace("acc (g)", "acc Z (g)")),
+        ("b.csv", COLUMNS.replace("acc (g)", "AccZ (g)")),
+        ("b-UD.csv", COLUMNS),
+        ("STA.HNZ.txt", COLUMNS),
+        ("b.txt", "# component: UP\n" + COLUMNS),
+        ("b.txt", "STREAM: HNZ\n" + COLUMNS),
+        ("b.UD", knet("U-D")),
+        ("b.ASC", esm(stream="HNZ")),
+        ("b.V2c", cosmos(400)),
+    ],
+)
+def test_no_vertical_component_is_taken_as_horizontal(tmp_path, name, text):
+    (tmp_path / "a.csv").write_text(COLUMNS)
+    (tmp_path / name).write_text(text)
+    with pytest.warns(RecordWarning, match="Left out: 1 vertical component"):
+        assert read_suite(tmp_path).names == ("a",)
 
 
 def test_without_any_record_nothing_can_be_skipped(tmp_path):
@@ -171,6 +381,18 @@ def test_entries_state_what_is_known(folder_survey):
     assert (entry.dt, entry.n_samples, entry.pga, entry.stated_pga) == (0.1, 3, 0.2 * 9.81, None)
     assert (entry.magnitude, entry.distance_km, entry.vs30) == (6.95, 7.5, 213.44)
     assert (entry.station, entry.component, entry.direction) == ("Some Station", "270", "horizontal")
+    assert {each.what: each.value for each in entry.findings}["unit"] == "g"
+
+
+def test_findings_name_the_files_of_which_they_are_true(tmp_path):
+    for name in ("b.csv", "a.csv"):
+        (tmp_path / name).write_text(COLUMNS)
+    (tmp_path / "c.csv").write_text(COLUMNS.replace("(g)", "(gal)"))
+    survey = rf.survey_records(tmp_path)
+    units = {(each.value, each.evidence): files for each, files in survey.findings.items() if each.what == "unit"}
+    assert units == {("g", 'label "acc (g)"'): ("a.csv", "b.csv"), ("cm/s2", 'label "acc (gal)"'): ("c.csv",)}
+    assert list(dict.fromkeys(each.what for each in survey.findings))[:3] == ["quantity", "unit", "time step"]
+    assert survey.to_frame()["findings"][0].split("; ")[1] == 'unit: g (label "acc (g)")'
 
 
 def test_it_agrees_with_read_suite(folder_survey):

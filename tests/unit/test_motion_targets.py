@@ -203,8 +203,7 @@ def test_decimal_commas(tmp_path):
     ("text", "options", "message"),
     [
         ("0.1 1\n2.0 1\n", {}, r'does not state the unit.*read_target\(path, units="g"\).*header "period'),
-        ("period (s), sa (g)\n0.1, 1\n2, 1\n", {"units": "m/s2"}, "the header says g, but units='m/s2' was given"),
-        ("period (s), sa (furlong)\n0.1, 1\n", {}, "the header gives the unit 'furlong', which is not known. Write it"),
+        ("period (s), sa (g)\n0.1, 1\n2, 1\n", {"units": "m/s2"}, r"is g in the file \(label .*'m/s2' was given"),
         ("T (s), sa\n0.1, 1\n2, 1\n", {}, "does not state the unit of its acceleration"),
         ("0.1\n0.2\n", {"units": "g"}, "line 1: a target spectrum has two columns, the period.* but 1 were found"),
         ("0.1 1\n0.2 1 2\n", {"units": "g"}, "line 2: expected 2 columns as in line 1, but found 3"),
@@ -220,6 +219,67 @@ def test_refuses_files(tmp_path, text, options, message):
     (tmp_path / "site.txt").write_text(text)
     with pytest.raises(rf.InputError, match=message):
         rf.read_target(tmp_path / "site.txt", **options)
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        ("Period (ms),Sa (g)\n100,0.3\n400,0.75\n2000,0.15\n", {}),
+        ("Frequency (Hz),Sa (g)\n0.5,0.15\n2.5,0.75\n10,0.3\n", {}),
+        ("Freq. [Hz]\tPSA [g]\n10\t0.3\n2.5\t0.75\n0.5\t0.15\n", {}),
+        ("f Sa\n0.5 0.15\n2.5 0.75\n10 0.3\n", {"units": "g"}),
+        ("Frequency (kHz);Sa (m/s2)\n0,0005;1,4715\n0,0025;7,3575\n0,01;2,943\n", {}),
+        ("T (s);Sa (g)\n0,1;30%\n0,4;75%\n2;15 %\n", {}),
+        ("T (s) Sa (%g)\n0.1 30\n0.4 75\n2 15\n", {}),
+        ("T (s),Sa (%g)\n0.1,30%\n0.4,75%\n2,15%\n", {}),
+        ("T,Sa\n0.1,30\n0.4,75\n2,15\n", {"units": "%g"}),
+        ("Sa_g,T_s\n0.3,0.1\n0.75,0.4\n0.15,2\n", {}),
+        ("No.,T (s),Sd (cm),Sv (cm/s),Sa (g)\n1,0.1,9,9,0.3\n2,0.4,9,9,0.75\n3,2,9,9,0.15\n", {}),
+        (
+            "Target spectrum, units: s, g\nNatural period  Spectral acceleration\n0.1 0.3\n0.4 0.75\n2 0.15\n",
+            {"units": "g"},
+        ),
+        ("Spectral acceleration in units of g\nperiod,ordinate\n0.1,0.3\n0.4,0.75\n2,0.15\n", {}),
+        ('"T (s)","Sa (g)"\n"0.1","0.3"\n"0.4","0.75"\n"2","0.15"\n', {}),
+        ("Sa (g) vs T (s)\n0.1 0.3\n0.4 0.75\n2 0.15\n", {}),
+        ("Natural period (s)  Spectral acceleration (g)\n0.1 0.3\n0.4 0.75\n2 0.15\n", {}),
+        ("T (s)\tS_d(T) (g, 5%)\n0.1\t0.3\n0.4\t0.75\n2\t0.15\n", {}),
+    ],
+)
+def test_periods_frequencies_and_percent(tmp_path, text, options):
+    (tmp_path / "site.csv").write_text(text)
+    found = rf.read_target(tmp_path / "site.csv", **options)
+    assert found.periods == pytest.approx([0.1, 0.4, 2.0], rel=1e-14)
+    assert found.sa / G == pytest.approx([0.3, 0.75, 0.15], rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "units", "field", "words"),
+    [
+        ("Period (s),Sd (cm)\n0.1,3\n2,20\n", None, None, ("displacement", "Sd (cm)")),
+        ("Period (s),PSV\n0.1,3\n2,20\n", "g", None, ("velocity", "PSV")),
+        ("Period (s),S (cm/s)\n0.1,3\n2,20\n", "g", None, ("velocity", "S (cm/s)")),
+        ("time (s),acc (g)\n0.1,.3\n2,.2\n", None, None, ("time (s)", "read_motion", "period (s)")),
+        ("Frequency (s),Sa (g)\n1,.3\n2,.2\n", None, None, ("Frequency (s)", "contradicts")),
+        ("Frequency (Hz),Sa (g)\n0,.3\n2,.2\n", None, "periods", ("line 2", "frequency of 0")),
+        ("omega (rad/s),Sa (g)\n1,.3\n2,.2\n", None, None, ("rad/s", "Hz")),
+        ("Period,Sa (g)\n0,.3\n500,.2\n", None, "periods", ("500 s", "period (ms)")),
+        ("0.1,.3\n33,.2\n", "g", "periods", ("33 s", "frequency (Hz)")),
+        ("T (s),Sa (g)\n0.1,30\n2,75\n", None, "units", ("75 g", "above 10 g", "sa (%g)")),
+        ("T (s),Sa (g)\n0.1,30%\n2,0.75\n", None, "units", ("percent sign",)),
+        ("T (s),Sa (m/s2)\n0.1,30%\n2,75%\n", None, "units", ("percent", "m/s2")),
+        ("T (s),Sa (%)\n0.1,30\n2,75\n", "g", None, ("'%'", "%g")),
+        ("units: m/s2\nT (s),Sa (g)\n0.1,1\n2,1\n", None, "units", ('label "Sa (g)"', 'line 1: "units: m/s2"')),
+        ("T (s),Sa X (g),Sa Y (g)\n1,1,1\n2,1,1\n", None, None, ("'Sa X (g)'", "'Sa Y (g)'", "Keep these two")),
+        ("T (s),Sa (g),Sa (g)\n1,1,1\n2,1,1\n", None, None, ("one the acceleration",)),
+    ],
+)
+def test_what_a_label_contradicts(tmp_path, text, units, field, words):
+    (tmp_path / "site.csv").write_text(text)
+    with pytest.raises(rf.InputError) as caught:
+        rf.read_target(tmp_path / "site.csv", units)
+    assert caught.value.field == field
+    assert all(word in str(caught.value) for word in ("site.csv", *words))
 
 
 def formula(period, s_alpha, s_beta, factors, rock, zeta):

@@ -308,6 +308,9 @@ def test_ragged_shapes_are_told():
     ("text", "words"),
     [
         ("", "its first line must declare a matrix"),
+        ("1,1, 1,1, 1.0e6\n2,1, 1,1, -5.0e5\n", r"it is in Abaqus.s form MATRIX INPUT .* numpy\.savez"),
+        ("** Abaqus\n*MATRIX INPUT, NAME=K\n1,1, 1,1, 1.0e6\n", "it is in Abaqus.s form MATRIX INPUT"),
+        ("1 1 1.0e6\n2 1 -5.0e5\n2 2 5.0e5\n", "its entries lack the header of Matrix Market. Write above them"),
         ("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0", "its first line must declare a matrix"),
         ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its size line must give the numbers of rows"),
         (

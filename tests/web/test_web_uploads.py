@@ -378,6 +378,8 @@ def test_a_folder_is_what_the_library_surveys(client, folder, archive) -> None:
     assert [by_name[name]["vertical"] for name in sorted(by_name)] == [True, True, False]
     station = next(each for each in found["stations"] if each["name"] == "RSN7")
     assert (station["horizontal"], station["vertical"]) == (["RSN7_TEST000", "RSN7_TEST090"], "RSN7_TEST-UP")
+    units = [each for each in found["findings"] if each.startswith("unit: g (")]
+    assert any("RSN7_TEST000.AT2" in each for each in units)
     # The page asks again after it was reloaded.
     assert json.loads(client.request(f"/api/folder/{found['folder']}")[2]) == found
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import few_texts_shown, number_with_noun
+from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -239,6 +239,7 @@ rockflex survey records --vertical pair --json
 rockflex survey *.AT2 flatfile.csv"""
 
 MAX_NAMED_FILES = 6  # files that share a reason and are named; of more, the number is told
+MAX_FINDINGS = 8  # of one kind, such as time steps, that are told
 
 
 def survey(
@@ -293,7 +294,8 @@ def _print_record_survey(found: "RecordSurvey") -> None:
     from rockflex._constants import GRAVITY
 
     def cells(entry: "SurveyEntry") -> list[str]:
-        words = [entry.file, entry.format, entry.station, entry.component]
+        unit = next((each.value for each in entry.findings if each.what == "unit"), None)
+        words = [entry.file, entry.format, entry.station, entry.component, unit]
         facts = [entry.magnitude, entry.distance_km, entry.vs30]
         samples = ["-" if value is None else f"{value:g}" for value in (entry.dt, entry.n_samples)]
         peak = "-" if entry.pga is None else console.number(entry.pga / GRAVITY)
@@ -305,8 +307,8 @@ def _print_record_survey(found: "RecordSurvey") -> None:
             *("-" if fact is None else f"{fact:g}" for fact in facts),
         ]
 
-    head = ("file", "format", "station", "component", "taken", "dt [s]", "npts", "PGA [g]", "M", "R [km]", "Vs30 [m/s]")
-    console.print_rows(head, map(cells, found.entries), 5)
+    head = ("file", "format", "station", "component", "unit", "taken", "dt [s]", "npts", "PGA [g]")
+    console.print_rows((*head, "M", "R [km]", "Vs30 [m/s]"), map(cells, found.entries), 6)
     taken, left = len(found.taken), len(found.left_out)
     console.print_line(f"\n{taken} taken, {left} left out; {_station_count_text(found)}")
     for title, entries in (("Left out", found.left_out), ("Taken, but", [each for each in found.taken if each.reason])):
@@ -314,8 +316,25 @@ def _print_record_survey(found: "RecordSurvey") -> None:
             console.print_line(f"\n{title}:")
         for reason in dict.fromkeys(entry.reason for entry in entries):
             names = list(dict.fromkeys(entry.file for entry in entries if entry.reason == reason))
-            more = f" and {len(names) - MAX_NAMED_FILES} more" if len(names) > MAX_NAMED_FILES else ""
-            console.print_line(f"  {', '.join(names[:MAX_NAMED_FILES])}{more}: {reason}")
+            console.print_line(f"  {first_texts_shown(names, MAX_NAMED_FILES)}: {reason}")
+    if found.findings:
+        console.print_line("\nAs read:")
+        console.print_rows(("what", "value", "by", "files"), _rows_of_findings(found), 4)
+
+
+def _rows_of_findings(found: "RecordSurvey") -> list[list[str]]:
+    """Return what the readers found, each with the files that share it; of many that differ, the first ones."""
+    read = len({entry.file for entry in found.entries if entry.findings})
+    rows: list[list[str]] = []
+    for kind in dict.fromkeys(each.what for each in found.findings):
+        shared = [(each, names) for each, names in found.findings.items() if each.what == kind]
+        for each, names in shared[:MAX_FINDINGS]:
+            whole = len(names) == read > 1
+            files = f"all {read}" if whole else first_texts_shown(names, MAX_NAMED_FILES)
+            rows.append([kind, each.value, each.evidence, files])
+        if len(shared) > MAX_FINDINGS:
+            rows.append([kind, f"{len(shared) - MAX_FINDINGS} more: --json", "", ""])
+    return rows
 
 
 def _station_count_text(found: "RecordSurvey") -> str:

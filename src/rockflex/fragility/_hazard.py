@@ -3,6 +3,7 @@
 import csv
 import math
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,7 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_finite_vector, checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular_file, checked_file_path
+from rockflex._files import check_regular_file, checked_file_path, unicode_text
 from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_of_evaluation_points
@@ -62,39 +63,93 @@ def openquake_unit_in_si(measure: str) -> float:
     return _OPENQUAKE_UNITS[openquake_kind_and_period(measure)[0]]
 
 
-def read_openquake_hazard_curve(file: Path, site: Site | None) -> tuple[Array, Array, float]:
-    """Read the curve of one site: levels in SI units, the probabilities of exceeding them, and their years."""
+@dataclass(frozen=True)
+class HazardTable:
+    """The curves of a file: a row for each site under the names of the columns, and what they are about."""
+
+    names: list[str]
+    rows: list[list[str]]
+    years: float
+    measure: str
+    damping: float = HAZARD_DAMPING
+
+
+def read_openquake_hazard_curve(file: Path, site: Site | None) -> tuple[Array, Array, float, float]:
+    """Read the curve of one site: levels in SI units, the probabilities of exceeding them, their years, and damping."""
     check_regular_file(file, "path")
     try:
-        lines = file.read_text("utf-8-sig").splitlines()
+        text = unicode_text(file.read_bytes())
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{file} cannot be read: {error}.", field="path") from error
-    years, measure = _hazard_years_and_measure(file, " ".join(line for line in lines if line.startswith("#")))
-    names, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
-    columns = [place for place, name in enumerate(names) if name.startswith(_LEVEL_PREFIX)]
-    if not columns or "lon" not in names or "lat" not in names:
+    table = _nrml_hazard_table(file, text) if text.lstrip().startswith("<") else _csv_hazard_table(file, text)
+    columns = [place for place, name in enumerate(table.names) if name.startswith(_LEVEL_PREFIX)]
+    if not columns or "lon" not in table.names or "lat" not in table.names:
         raise InputError(
             f"{file} must be a hazard curve that OpenQuake exported, with the columns lon, lat and poe-..., but its "
-            f"columns are {shown(', '.join(names))}.",
+            f"columns are {shown(', '.join(table.names))}.",
             field="path",
         )
-    row = _hazard_row_of_site(file, names, rows, site)
-    unit = openquake_unit_in_si(measure)
-    levels = [_hazard_number(file, names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
-    return np.array(levels), np.array([_hazard_number(file, row[place]) for place in columns]), years
+    row = _hazard_row_of_site(file, table.names, table.rows, site)
+    unit = openquake_unit_in_si(table.measure)
+    levels = [_hazard_number(file, table.names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
+    poe = [_hazard_number(file, row[place]) for place in columns]
+    return np.array(levels), np.array(poe), table.years, table.damping
+
+
+def _csv_hazard_table(file: Path, text: str) -> HazardTable:
+    lines = text.splitlines()
+    years, measure = _hazard_years_and_measure(file, " ".join(line for line in lines if line.startswith("#")))
+    names, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
+    return HazardTable([name.partition(":")[0] for name in names], rows, years, measure)  # lon:float32
 
 
 def _hazard_years_and_measure(file: Path, comment: str) -> tuple[float, str]:
-    """The years and the measure in the comment that such a file begins with."""
+    """The years and the measure in the comment that such a file begins with; before version 3.1 without quotes."""
     years = re.search(r"investigation_time=([0-9.eE+-]+)", comment)
-    measure = re.search(r"""imt=["']+([^"']+)""", comment)
+    measure = re.search(r"""imt=(?:["']+([^"']+)|([^\s,"']+))""", comment)
     if years is None or measure is None:
         raise InputError(
             f"{file} must begin with a comment that states investigation_time and imt, as the hazard curves that "
             "OpenQuake exports do. Otherwise read its columns, and give them to HazardCurve.from_poe.",
             field="path",
         )
-    return _hazard_number(file, years[1]), measure[1]
+    return _hazard_number(file, years[1]), measure[1] or measure[2]
+
+
+def _nrml_hazard_table(file: Path, text: str) -> HazardTable:
+    """Return the hazard curves in a file of NRML, the XML of OpenQuake."""
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise InputError(f"{file} declares entities, which NRML has none of. Export the curves again.", field="path")
+    try:
+        root = ET.fromstring(text)
+    except ET.ParseError as error:
+        raise InputError(f"{file} is no valid XML: {error}. Export the curves again, as CSV.", field="path") from error
+    sets = root.findall(".//{*}hazardCurves")
+    if len(sets) != 1:
+        inside = ", ".join(dict.fromkeys(each.tag.rpartition("}")[2] for each in root)) or "nothing"
+        raise InputError(
+            f"{file} must hold the hazard curves of one intensity measure, one element hazardCurves of NRML, but it "
+            f"holds {len(sets)}, in {shown(inside)}. Export the curves of each measure to a file of its own.",
+            field="path",
+        )
+    (curves,) = sets
+    levels = curves.findtext(".//{*}IMLs", "").split()
+    rows: list[list[str]] = []
+    for each in curves.findall("{*}hazardCurve"):
+        place = each.findtext(".//{*}pos", "").split()[:2] or ["0", "0"]  # EFEHR gives the only site no place
+        if each.findtext("{*}IMLs", curves.findtext("{*}IMLs", "")).split() != levels:
+            raise InputError(f"{file} has curves at different levels. Export them as CSV.", field="path")
+        rows.append([*place, *each.findtext("{*}poEs", "").split()])
+    measure = curves.get("IMT", "")
+    if measure in ("SA", "AvgSA"):
+        measure += f"({curves.get('saPeriod', '')})"
+    return HazardTable(
+        ["lon", "lat", *(_LEVEL_PREFIX + level for level in levels)],
+        rows,
+        _hazard_number(file, curves.get("investigationTime", "")),
+        measure,
+        _hazard_number(file, curves.get("saDamping", f"{100.0 * HAZARD_DAMPING:g}")) / 100.0,
+    )
 
 
 def _hazard_row_of_site(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
@@ -262,6 +317,9 @@ class HazardCurve(Value):
     def from_openquake_csv(cls, path: str | Path, *, site: tuple[float, float] | str | None = None) -> Self:
         r"""Read the hazard curve of a site from a file that OpenQuake exported, such as hazard_curve-mean-PGA_1.csv.
 
+        Files of all versions that state their ``investigation_time`` and ``imt`` are read, and NRML, the XML that older
+        versions and web services such as EFEHR export.
+
         Measures are converted to SI units: m/s² for PGA and SA, with g = 9.81 m/s², and m/s for PGV. Points with a
         probability of 0 or 1, at which no rate is known, are left out; of several with the same probability, the one
         with the largest measure stays.
@@ -269,8 +327,7 @@ class HazardCurve(Value):
         Parameters
         ----------
         path
-            Path of the file, of one intensity measure; it begins with a comment that states its
-            ``investigation_time``.
+            Path of the file, of one intensity measure.
         site
             Longitude and latitude in degrees, to 1e-4, or the site's ``custom_site_id``. Not needed if there is one
             site only.
@@ -296,7 +353,7 @@ class HazardCurve(Value):
         >>> hazard.im, hazard.rate.round(5)
         (array([0.1, 0.2]), array([0.01022, 0.00211]))
         """
-        im, poe, years = read_openquake_hazard_curve(checked_file_path("path", path), site)
+        im, poe, years, damping = read_openquake_hazard_curve(checked_file_path("path", path), site)
         if (poe < 0.0).any() or (poe > 1.0).any():
             raise InputError(f"{path} holds probabilities below 0 or above 1.", field="path")
         last = np.append(poe[1:] != poe[:-1], True)
@@ -306,7 +363,7 @@ class HazardCurve(Value):
                 f"{path} must have two different probabilities between 0 and 1 at this site, but it has {kept.sum()}.",
                 field="path",
             )
-        return cls.from_poe(im[kept], poe[kept], years)
+        return cls.from_poe(im[kept], poe[kept], years, damping=damping)
 
     @property
     def slopes(self) -> Array:

@@ -37,7 +37,8 @@ from rockflex.motion._recordings import (
 from rockflex.motion._spectra import ResponseSpectrum, TargetSpectrum
 from rockflex.motion._suite import Selection, Suite, load_suite, suite_names
 from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records, survey_without_obspy
-from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
+from rockflex.motion._target_files import read_target
+from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum
 from rockflex.motion._units import UNITS, acceleration_in_text
 
 __all__ = [

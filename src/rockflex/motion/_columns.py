@@ -216,7 +216,8 @@ def _no_acceleration(file: Path, label: Label) -> NoAccelerationError:
     what = OTHERS.get(label.kind, f"a {label.kind}")
     return NoAccelerationError(
         f"{file}: an acceleration is expected, but the column is labelled {shown(label.text)}, {what}. Give the file "
-        "of the acceleration."
+        "of the acceleration.",
+        found=what.removeprefix("a "),
     )
 
 

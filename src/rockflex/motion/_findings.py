@@ -13,7 +13,17 @@ MAX_QUOTED = 80  # characters of a line that is quoted
 
 
 class NoAccelerationError(InputError):
-    """A file holds no acceleration, such as a velocity, a spectrum or text; a folder of records leaves it out."""
+    """A file holds no acceleration, such as a velocity, a spectrum or text; a folder of records leaves it out.
+
+    Attributes
+    ----------
+    found : str
+        What it holds, in a word or two for a list of files, such as "velocity".
+    """
+
+    def __init__(self, message: str = "", *, found: str = "no acceleration", field: str | None = None) -> None:
+        super().__init__(message, field=field)
+        self.found = found
 
 
 @dataclass(frozen=True)

@@ -116,7 +116,7 @@ def header_of_lines(file: Path, lines: Lines) -> Header:
 
 def _add_quantity_and_unit(found: Header, line: str, said: str) -> None:
     words: list[Quantity] = [kind for kind, pattern in QUANTITY.items() if pattern.search(line)]
-    units = list(_units_in_line(line))
+    units = list(units_in_line(line))
     typed = TYPE_LINE.match(line)
     about_value = ABOUT_A_VALUE.search(line)
     if SPECTRUM.match(typed[1] if typed else line) and not MATCHED.search(line):
@@ -147,7 +147,7 @@ def _add_quantity_and_unit(found: Header, line: str, said: str) -> None:
         found.quantities.extend(Evidence[Quantity](kind, said) for kind in kinds)
 
 
-def _units_in_line(line: str) -> Iterator[Unit]:
+def units_in_line(line: str) -> Iterator[Unit]:
     """Yield the units that a line states: after the word unit, in brackets, after "in", or as a word by itself."""
     word = UNIT_WORD.search(line)
     if word:

@@ -7,78 +7,28 @@ from itertools import chain
 from pathlib import Path
 from typing import Literal, get_args
 
-import numpy as np
-
-from rockflex._arrays import Array
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex.motion._copies import duplicate_components, uncorrected_components
 from rockflex.motion._declared import Declared
+from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
-from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_network, stated_peak_mismatch
+from rockflex.motion._readers import components_in_file, stated_peak_mismatch
+from rockflex.motion._record_files import fault_of_file, files_of_folder, record_files
 from rockflex.motion._record_table import RecordTable, entry_for_file, read_record_table, record_table_in_content
-from rockflex.motion._recordings import are_different_components, file_names_text, pair_vertical_records
+from rockflex.motion._recordings import file_names_text, pair_vertical_records
 from rockflex.motion._suite import Suite
-from rockflex.motion._text import decoded_text, read_file_bytes
+from rockflex.motion._text import read_file_bytes
 from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
-RECORD_SUFFIXES = (
-    *(".at2", ".csv", ".dat", ".tsv", ".txt"),
-    *(".xlsx", ".xlsm", ".xls"),
-    *(".mseed", ".miniseed", ".msd", ".sac", ".gse", ".gse2", ".evt"),
-)
-HEAD_BYTES = 4096  # bytes of a file that tell its format
 UnitsArgument = str | Mapping[str, str]
 TABLE_SUFFIXES = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm")
-MIN_COPY_SAMPLES = 50  # samples; fewer may be the same by chance
-COPY_TOLERANCE = 1e-3  # of the peak: two formats of one record round, or take another value of g
 OnError = Literal["raise", "skip"]
 Vertical = Literal["pair"]
 MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
 MAX_MESSAGE_LENGTH = 50_000  # most characters of a message that lists every file
-
-
-def record_files(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]:
-    """Return the name of a directory and its record files, or no name and the files given; sorted by name."""
-    if isinstance(paths, str | Path):
-        folder = checked_file_path("paths", paths)
-        if not folder.is_dir():
-            raise InputError(
-                f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
-            )
-        name, files = folder.resolve().name, record_files_in_folder(folder)
-    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        name, files = "", [checked_file_path("paths", path) for path in paths]
-    else:
-        raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
-    return name, sorted(files, key=lambda file: (file.name, str(file)))
-
-
-def record_files_in_folder(folder: Path) -> list[Path]:
-    """Return the record files of a directory, by suffix or by their first lines, sorted by name."""
-    files = [file for file in folder.iterdir() if file.is_file() and is_record_file(file)]
-    if not files:
-        raise InputError(
-            f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a file in one "
-            f"of the formats {first_texts_shown(list(FORMATS))}."
-        )
-    return sorted(files)
-
-
-def is_record_file(file: Path) -> bool:
-    """Return whether a file is read as a record when its folder is."""
-    if file.name.startswith("."):
-        return False
-    if file.suffix.lower() in RECORD_SUFFIXES:
-        return True
-    try:
-        with file.open("rb") as stream:
-            text = decoded_text(stream.read(HEAD_BYTES))
-    except OSError:
-        return False
-    lines = (text or "").splitlines()
-    return bool(lines) and is_of_a_network(lines)
 
 
 @dataclass(frozen=True)
@@ -112,7 +62,7 @@ def read_record_files(
                 own = record_table_in_content(file, read_file_bytes(file))
             found.append(RecordFileContent(file, table=own))
         except InputError as error:
-            found.append(RecordFileContent(file, fault=error))
+            found.append(RecordFileContent(file, fault=fault_of_file(file, error)))
         given = given if own is None else given.joined(own)
     common = declared_acceleration_unit(units) if isinstance(units, str) else None
     return [
@@ -143,7 +93,7 @@ def _read_record_file(
         said = Declared(own or common, dt if step is None else step, common=for_many)
         found = components_in_file(file, said, use_obspy=use_obspy)
     except InputError as error:
-        return RecordFileContent(file, fault=error)
+        return RecordFileContent(file, fault=fault_of_file(file, error))
     motions: dict[Path, GroundMotion] = {}
     for motion in found:
         key = file if motion.name == file.stem else file.parent / (motion.name.replace("/", "_") + file.suffix)
@@ -161,16 +111,21 @@ class ChosenComponents:
     unpaired: Mapping[Path, str]  # why a record that is to be paired has no vertical component; empty if none was found
     paired: Sequence[Path]  # vertical components of horizontal ones
     copies: Mapping[Path, Path]  # the component that each one repeats
+    uncorrected: Mapping[Path, Path]  # the corrected component that is taken for each one
 
 
 def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> ChosenComponents:
     """Take the horizontal components, with the vertical ones if `pair`.
 
-    Copies of other components are left out, and boreholes beneath surface records.
+    Copies of other components are left out, uncorrected ones beside corrected ones, and boreholes beneath surface
+    records.
     """
     motions = {path: motion for each in found for path, motion in each.motions.items()}
-    copies = _duplicate_components(motions, {path: each.file for each in found for path in each.motions})
+    files = {path: each.file for each in found for path in each.motions}
+    copies = duplicate_components(motions, files)
     motions = {path: motion for path, motion in motions.items() if path not in copies}
+    uncorrected = uncorrected_components(motions, files)
+    motions = {path: motion for path, motion in motions.items() if path not in uncorrected}
     surface = {_site_key(motion) for motion in motions.values() if record_info_of(motion).location == "surface"}
     boreholes = [
         path
@@ -182,57 +137,10 @@ def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> Chos
     vertical = {path: motion for path, motion in motions.items() if is_vertical_component(motion)}
     taken = {path: motion for path, motion in motions.items() if path not in vertical}
     if not pair or not taken:
-        return ChosenComponents(taken, list(vertical), boreholes, {}, [], copies)
+        return ChosenComponents(taken, list(vertical), boreholes, {}, [], copies, uncorrected)
     both, unpaired, left = pair_vertical_records(taken, vertical)
-    return ChosenComponents(both, left, boreholes, unpaired, [path for path in vertical if path not in left], copies)
-
-
-def _duplicate_components(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) -> dict[Path, Path]:
-    """Return the components that another file holds too, and which of both is kept: the one of which more is known.
-
-    Components that their record sequence numbers, azimuths or names tell apart are no copies, whatever their samples.
-    """
-    found: dict[Path, Path] = {}
-    kept: dict[int, list[tuple[float, Path]]] = {}
-    for path in sorted(motions, key=lambda path: _duplicate_rank(path, motions[path])):
-        motion = motions[path]
-        if motion.acceleration.size < MIN_COPY_SAMPLES:
-            continue
-        others = kept.setdefault(motion.acceleration.size, [])
-        for pga, other in others:
-            if (
-                files[path] != files[other]
-                and abs(pga - motion.pga) <= COPY_TOLERANCE * pga
-                and _are_duplicate_components(path, motion, other, motions[other])
-            ):
-                found[path] = other
-                break
-        else:
-            others.append((motion.pga, path))
-    return {path: found[path] for path in motions if path in found}
-
-
-def _duplicate_rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
-    """Return a key by which the first of some copies is the one to keep."""
-    known = sum(value is not None for value in vars(record_info_of(motion)).values())
-    return motion.vertical is None, -known, len(path.name), path.name, str(path)
-
-
-def _are_duplicate_components(path: Path, motion: GroundMotion, other: Path, kept: GroundMotion) -> bool:
-    if (
-        abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt
-        or is_vertical_component(motion) != is_vertical_component(kept)
-        or are_different_components(path, motion.metadata, other, kept.metadata)
-        or not _equal_samples(motion.acceleration, kept.acceleration)
-    ):
-        return False
-    return motion.vertical is None or kept.vertical is None or _equal_samples(motion.vertical, kept.vertical)
-
-
-def _equal_samples(one: Array, other: Array) -> bool:
-    """Return whether samples are the same but for rounding; two records at rest do not count as the same."""
-    peak = float(np.max(np.abs(other)))
-    return peak > 0.0 and bool(np.max(np.abs(one - other)) <= COPY_TOLERANCE * peak)
+    paired = [path for path in vertical if path not in left]
+    return ChosenComponents(both, left, boreholes, unpaired, paired, copies, uncorrected)
 
 
 def _site_key(motion: GroundMotion) -> tuple[object, ...]:
@@ -260,7 +168,11 @@ def read_suite(
 
     A record that two files hold, under different names or in different formats, is taken once, from the file that says
     more of it: if the steps and the samples (50 and more) are the same within 0.1 % of the peak, unless record sequence
-    numbers, azimuths or names (ABC000, ABC090) say that they are different components.
+    numbers, azimuths or names (ABC000, ABC090) say that they are different components. Of an uncorrected and a
+    corrected record of one component (CE36456.V1, CE36456.V2), the corrected one is taken.
+
+    What is no record beside records is left out with a warning: velocities, displacements, spectra, texts and tables of
+    something else. A record that cannot be read is an error.
 
     Vertical components, such as RSN953_NORTHR_MUL-UP.AT2, are left out, and a warning lists them; with
     ``vertical="pair"`` each horizontal component gets the vertical one of its station. The direction of a record is
@@ -269,9 +181,9 @@ def read_suite(
     Parameters
     ----------
     paths : path or iterable of paths
-        A directory, in which every file is read whose suffix is that of a record (.at2, .csv, .dat, .tsv, .txt, .xlsx,
-        .mseed and the like, in any case) or whose content begins as a K-NET, ESM, COSMOS or GeoNet file; or the files
-        themselves.
+        A directory, in which every file is read whose suffix is that of a record (.at2, .acc, .csv, .dat, .tsv, .txt,
+        .xlsx, .mseed and the like, in any case), whose content begins as a file of a network (see `FORMATS`), or whose
+        header names an acceleration above rows of numbers; or the files themselves.
     units, dt : optional
         As in `read_motion`, for files that do not state them. A dictionary gives the units of files by their names, in
         which ``*`` and ``?`` stand for other characters: ``{"lab-*.txt": "g", "old.csv": "cm/s2"}``.
@@ -302,9 +214,10 @@ def read_suite(
     Warns
     -----
     RecordWarning
-        If a vertical component, a borehole component beneath one at the surface (KiK-net), a copy of another record, or
-        a file that cannot be read is left out, a record has no vertical component although `vertical` is "pair", or a
-        peak differs by 1 to 20 % from that in the header.
+        If a vertical component, a borehole component beneath one at the surface (KiK-net), a copy of another record, an
+        uncorrected one beside a corrected one, a file without an acceleration or one that cannot be read is left out; a
+        file, archive or folder in the directory is not looked into; a record has no vertical component although
+        `vertical` is "pair"; or a peak differs by 1 to 20 % from that in the header.
 
     Examples
     --------
@@ -315,9 +228,25 @@ def read_suite(
     >>> rf.read_suite(["a.txt", "b.txt"], units="g", dt=0.01).names
     ('a', 'b')
     """
-    name, files = record_files(paths)
-    found = read_components_by_file(files, units, dt, on_error, vertical, table=table)
-    return Suite((motion for motions in found.values() for motion in motions), name)
+    folder = record_files(paths)
+    found = read_components_by_file(folder.files, units, dt, on_error, vertical, table=table)
+    for text in folder.remarks():
+        warnings.warn(text, RecordWarning, stacklevel=2)
+    return Suite((motion for motions in found.values() for motion in motions), folder.name)
+
+
+def record_files_in_folder(folder: Path) -> list[Path]:
+    """Return the record files of a directory, by suffix or by their beginning, sorted by name.
+
+    Warns
+    -----
+    RecordWarning
+        If something else lies in the folder, such as a folder or an archive.
+    """
+    found = files_of_folder(folder)
+    for text in found.remarks():
+        warnings.warn(text, RecordWarning, stacklevel=2)
+    return found.files
 
 
 def read_components_by_file(
@@ -342,15 +271,25 @@ def read_components_by_file(
         raise InputError(
             f"{file_names_text(files)}: only tables about records were given, but no record. Give the records too."
         )
-    faults = {each.file: each.fault for each in records if each.fault is not None}
+    others = {each.file: each.fault for each in records if isinstance(each.fault, NoAccelerationError)}
+    faults = {each.file: each.fault for each in records if each.fault is not None and each.file not in others}
+    none_left = len(faults) + len(others) == len(records)
     if faults:
         message = _unreadable_files_message({file: str(error) for file, error in faults.items()}, len(records))
-        if on_error == "raise" or len(faults) == len(records):
-            message += f" {skip} continues with the other files." if len(faults) < len(records) else ""
+        if on_error == "raise" or none_left:
+            message += "" if none_left else f" {skip} continues with the other files."
             fields = [error.field for error in faults.values()]
             field = next((name for name in fields[:MAX_REPORTED] if name in ("units", "dt")), None)
             raise InputError(message, longest=MAX_MESSAGE_LENGTH, field=field)
         warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
+    elif none_left and len(others) == 1:
+        raise next(iter(others.values()))
+    if others:
+        what = first_texts_shown([f"{file.name} ({error.found})" for file, error in others.items()])
+        without = f"{number_with_noun(len(others), 'file')} without an acceleration, {what}"
+        if none_left:
+            raise InputError(f"No record was given, only {without}. Give the files of the accelerations.")
+        warnings.warn(f"Left out: {without}.", RecordWarning, stacklevel=3)
     for path, motion in (item for each in records for item in each.motions.items()):
         if note := stated_peak_mismatch(motion)[1]:
             warnings.warn(f"{path}: {note}.", RecordWarning, stacklevel=3)
@@ -379,6 +318,10 @@ def _left_out_components(result: ChosenComponents) -> Iterator[str]:
     if result.copies:
         names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
         yield f"Left out: {number_with_noun(len(result.copies), 'copy', 'copies')} of records in other files, {names}."
+    if result.uncorrected:
+        names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.uncorrected.items()])
+        count = number_with_noun(len(result.uncorrected), "uncorrected record")
+        yield f"Left out: {count} beside corrected ones, {names}."
     names = ", ".join(path.name for path in result.vertical)
     components = number_with_noun(len(result.vertical), "vertical component")
     if result.vertical and not result.taken:

@@ -15,7 +15,7 @@ from typing import TypeAlias, TypeVar
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.motion import _text
-from rockflex.motion._excel import excel_sheet_cells, is_excel_workbook
+from rockflex.motion._excel import excel_sheets, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
@@ -115,7 +115,7 @@ def read_record_table(file: Path) -> RecordTable:
 def record_table_in_content(file: Path, content: bytes) -> RecordTable | None:
     """Return the table about records in the bytes of a file, or None if there is none."""
     if is_excel_workbook(content):
-        sheets = (_record_table_from_rows(file, rows) for rows in excel_sheet_cells(file, content).values())
+        sheets = (_record_table_from_rows(file, each.rows) for each in excel_sheets(file, content) if not each.hidden)
         return next((found for found in sheets if found is not None), None)
     lines = (_text.decoded_text(content) or "").splitlines()
     for head in lines[:MAX_HEADER_LINE]:

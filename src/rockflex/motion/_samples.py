@@ -93,6 +93,7 @@ def settled_quantity(file: Path, words: list[Evidence[Quantity]], header: Header
         raise NoAccelerationError(
             f"{file} holds a {others[0].value} by its {others[0].said}, but an acceleration is expected. Give the file "
             "of the acceleration; if this is one, correct what says otherwise.",
+            found=others[0].value,
         )
     remedy = "Keep what is right: correct the header, or rename the file."
     return settled(file, "quantity", stated, None, remedy, lambda one, other: one == other)

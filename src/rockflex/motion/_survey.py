@@ -1,15 +1,17 @@
 """A report of the records in a folder: which components are taken, which are not, and why."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from rockflex._language import translated
 from rockflex._values import Value
 from rockflex.motion import _read_suite
+from rockflex.motion._findings import Finding, What
 from rockflex.motion._ground_motion import GroundMotion, record_info_of
 from rockflex.motion._readers import stated_peak_mismatch
+from rockflex.motion._record_files import FolderFiles, record_files
 from rockflex.motion._recordings import StationRecord, file_names_text, group_stations
 from rockflex.motion._suite import Suite
 
@@ -47,6 +49,8 @@ class SurveyEntry:
         Peak of the samples, and that in the header, in m/s².
     magnitude, distance_km, vs30 : float, optional
         As in `RecordInfo`, from the header or a table about the records.
+    findings : tuple of Finding
+        What the reader found about quantity, unit, time step and component, and what says so.
 
     Examples
     --------
@@ -71,6 +75,7 @@ class SurveyEntry:
     magnitude: float | None = None
     distance_km: float | None = None
     vs30: float | None = None
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,6 +118,16 @@ class RecordSurvey(Value):
         """Entries of the components and files that are not taken, with the reasons."""
         return tuple(entry for entry in self.entries if not entry.taken)
 
+    @property
+    def findings(self) -> dict[Finding, tuple[str, ...]]:
+        """What the readers found, and what says so, each with the files that it is true of."""
+        files: dict[Finding, dict[str, None]] = {}
+        for entry in self.entries:
+            for each in entry.findings:
+                files.setdefault(each, {})[entry.file] = None
+        order = get_args(What)
+        return {each: tuple(files[each]) for each in sorted(files, key=lambda each: order.index(each.what))}
+
     def suite(self) -> Suite:
         """Return the suite of the motions that are taken, as ``read_suite(paths, on_error="skip")`` does.
 
@@ -127,9 +142,8 @@ class RecordSurvey(Value):
         """Return the entries as a table, with a row for each and a column for each field of `SurveyEntry`."""
         import pandas as pd
 
-        return pd.DataFrame(
-            [asdict(entry) for entry in self.entries], columns=[each.name for each in fields(SurveyEntry)]
-        )
+        rows = [{**vars(entry), "findings": "; ".join(map(str, entry.findings))} for entry in self.entries]
+        return pd.DataFrame(rows, columns=[each.name for each in fields(SurveyEntry)])
 
     def __repr__(self) -> str:
         return f"RecordSurvey({self.name!r}, {len(self.taken)} taken, {len(self.left_out)} left out)"
@@ -145,7 +159,7 @@ def survey_records(
     r"""Report the content of each file in a folder, whether `read_suite` takes it, and why not.
 
     No file is an error: one that cannot be read has an entry with the reason. Files that are no records by their suffix
-    and their beginning have entries too, but not the folders within a folder.
+    and their beginning have entries too, and so have folders and archives, which are not looked into.
 
     Parameters
     ----------
@@ -173,9 +187,9 @@ def survey_records(
     [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'notes.txt holds no nu')]
     """
     _read_suite.check_vertical_option(vertical)
-    name, files = _read_suite.record_files(paths)
+    folder = record_files(paths)
     return _survey_of_components(
-        paths, name, _read_suite.read_record_files(files, units, dt, table), pair=vertical is not None
+        folder, _read_suite.read_record_files(folder.files, units, dt, table), pair=vertical is not None
     )
 
 
@@ -186,30 +200,44 @@ def survey_without_obspy(
 
     The first survey has the horizontal components alone, the second the vertical ones of their stations, too.
     """
-    name, files = _read_suite.record_files(folder)
-    found = _read_suite.read_record_files(files, units, dt, use_obspy=False)
-    return _survey_of_components(folder, name, found, pair=False), _survey_of_components(folder, name, found, pair=True)
+    files = record_files(folder)
+    found = _read_suite.read_record_files(files.files, units, dt, use_obspy=False)
+    return _survey_of_components(files, found, pair=False), _survey_of_components(files, found, pair=True)
 
 
 def _survey_of_components(
-    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[_read_suite.RecordFileContent], *, pair: bool
+    folder: FolderFiles, found: Sequence[_read_suite.RecordFileContent], *, pair: bool
 ) -> RecordSurvey:
     result = _read_suite.choose_components(found, pair=pair)
     names = [each.file.name for each in found]
     entries = [entry for each in found for entry in _survey_entries(each, result, names)]
-    if isinstance(paths, str | Path):
-        others = (file for file in Path(paths).iterdir() if file.is_file() and not _read_suite.is_record_file(file))
-        entries += [
-            SurveyEntry(file=file.name, taken=False, reason=translated("no record, by suffix and beginning"))
-            for file in others
-        ]
-    motions = [motion for each in found for path, motion in each.motions.items() if path not in result.copies]
+    entries += [SurveyEntry(file=name, taken=False, reason=reason) for name, reason in _not_read(folder)]
+    left = result.copies.keys() | result.uncorrected.keys()
+    motions = [motion for each in found for path, motion in each.motions.items() if path not in left]
     return RecordSurvey(
-        name,
+        folder.name,
         tuple(sorted(entries, key=lambda entry: entry.file)),
         tuple(result.taken[path] for each in found for path in each.motions if path in result.taken),
         group_stations(motions),
     )
+
+
+def _not_read(folder: FolderFiles) -> Iterator[tuple[str, str]]:
+    """Yield the names of files and folders that are not read, and why."""
+    for file in (*folder.hidden, *folder.others):
+        yield file.name, translated("no record, by suffix and beginning")
+    for file in folder.archives:
+        yield file.name, translated("an archive, which was not unpacked")
+    for path, count in folder.folders.items():
+        yield (
+            f"{path.name}/",
+            translated(
+                "a folder with {n} file, which was not entered"
+                if count == 1
+                else "a folder with {n} files, which was not entered",
+                n=count,
+            ),
+        )
 
 
 def _survey_entries(
@@ -240,6 +268,7 @@ def _survey_entries(
             dt=motion.dt,
             n_samples=motion.acceleration.size,
             pga=motion.pga,
+            findings=record_info_of(motion).findings,
             **{name: getattr(record_info_of(motion), name) for name in COPIED_FACTS},
         )
         for path, motion in each.motions.items()
@@ -250,6 +279,8 @@ def _survey_reason(path: Path, result: _read_suite.ChosenComponents) -> str:
     """Return why a component is not taken, or has no vertical one."""
     if path in result.copies:
         return translated("a copy of {name}", name=result.copies[path].name)
+    if path in result.uncorrected:
+        return translated("uncorrected; {name} is the corrected record", name=result.uncorrected[path].name)
     if path in result.boreholes:
         return translated("borehole component beneath a record at the surface")
     if path in result.vertical:

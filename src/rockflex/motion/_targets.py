@@ -1,16 +1,13 @@
-"""Target spectra of EN 1998-1:2004, EN 1998-1-1:2024 and ASCE 7-16, and from files."""
+"""Target spectra of EN 1998-1:2004, EN 1998-1-1:2024 and ASCE 7-16."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 
 from rockflex._checks import checked_finite_vector, checked_positive, is_one_of, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion import _text, _units
 from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
@@ -368,75 +365,3 @@ def _site_amplification(alpha: float, beta: float, site: str, given: tuple[float
             field="site",
         )
     return of_alpha, of_beta
-
-
-def read_target(path: str | Path, units: str | None = None, damping_ratio: float = 0.05) -> TargetSpectrum:
-    r"""Read a target spectrum from two columns of a CSV or text file: period in s, and pseudo-acceleration.
-
-    Columns are separated by commas, semicolons, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. Decimals may
-    have a comma where something else separates the columns.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    units : {"g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2"}, optional
-        Unit of the acceleration, if the header does not state it, as in "period (s), sa (g)".
-    damping_ratio : float
-        Damping ratio for which the ordinates hold.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum in m/s², named after the file without its suffix.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, empty or binary, does not have two columns of numbers, its unit is missing or not known,
-        or the values make no spectrum; see `TargetSpectrum`.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> from pathlib import Path
-    >>> _ = Path("site.csv").write_text("period (s), sa (g)\n0.0, 0.3\n0.1, 0.75\n0.5, 0.75\n2.0, 0.1875\n")
-    >>> rf.read_target("site.csv")
-    TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
-    """
-    if units is not None and not is_one_of(units, _units.UNITS):
-        raise InputError(
-            f"units must be one of {', '.join(map(repr, _units.UNITS))}, but {shown(units)} was given.", field="units"
-        )
-    file = checked_file_path("path", path)
-    table = _text.parse_numeric_table(
-        file, _text.read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
-    )
-    line, cells = table.rows[0]
-    if len(cells) != 2:
-        raise InputError(
-            f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
-            f"but {len(cells)} were found. Keep these."
-        )
-    values = np.array([[_text.parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = _units.UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
-    try:
-        return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
-    except InputError as error:
-        if error.field == "damping_ratio":
-            raise
-        raise InputError(f"{file}: {error}", field=error.field) from error
-
-
-def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
-    """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = _units.BRACKET.findall(head[: _units.end_of_last_bracket(head)])
-    written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
-    name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_units.UNITS)}")
-    if name is not None:
-        return name
-    raise InputError(
-        f'{file} does not state the unit of its acceleration. Declare it: read_target(path, units="g"), "m/s2" or '
-        '"cm/s2"; or write the header "period (s), sa (g)".',
-        field="units",
-    )

@@ -218,7 +218,7 @@ def split_numeric_lines(file: Path, lines: list[str], expected: str = EXPECTED_R
         else:
             blank.append(i)
     if not body:
-        raise NoAccelerationError(f"{file} holds no numbers: {expected}.")
+        raise NoAccelerationError(f"{file} holds no numbers: {expected}.", found="no numbers")
     last = body[-1][0]
     return NumericLines(heads, body, tuple(line for line in blank if line < last))
 

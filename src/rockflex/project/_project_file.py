@@ -13,6 +13,7 @@ import tomli_w
 from pydantic import Field, TypeAdapter, ValidationError
 
 from rockflex._errors import InputError
+from rockflex._files import unicode_text
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex._shown import shortened, shown
 from rockflex.models import BoucWen, Restitution, SidedRestitution, VVELComplete, VVELSimplified
@@ -257,7 +258,7 @@ def _toml_of(members: Mapping[str, bytes], name: str) -> dict[str, Any]:
     content = members.get(name)
     if content is None:
         raise InputError(f"{name} is not in the archive. Give a file that Project.save wrote.")
-    return _read(name, "TOML", lambda: tomllib.loads(content.decode()))
+    return _read(name, "TOML", lambda: tomllib.loads(unicode_text(content)))
 
 
 def record_of_member(members: Mapping[str, bytes], row: RecordRow) -> GroundMotion:

@@ -1,6 +1,7 @@
 """Structures from the matrices or the modes of any finite element program, also in its files."""
 
 import hashlib
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 NumbersOrPath: TypeAlias = ArrayLike | str | Path
 """Numbers, or the path of a file that contains them."""
 MAX_FREEDOMS = 20_000  # degrees of freedom of a sparse matrix: 3 GB as a dense one
+MAX_FORM_LINES = 50  # of a file, which tell its form
+_ABAQUS_ENTRY = re.compile(r"\s*+-?\d++\s*+,\s*+\d++\s*+,\s*+-?\d++\s*+,\s*+\d++\s*+,\s*+[-+.\d]")
+_ENTRY = re.compile(r"\s*+\d++[\s,]++\d++[\s,]++[-+]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][-+]?+\d++)?+\s*+$")
 _MATRIX_SUFFIXES = (".npz", ".mtx", ".csv")
 Heights = NumbersOrPath | Mapping[int, float]
 """Height of every degree of freedom in m, NaN for none, or a map {index: height} of those that translate."""
@@ -48,6 +52,8 @@ def read_matrix_market(path: Path) -> "coo_array":
     from scipy.sparse import coo_array
 
     banner, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    if form := _other_matrix_form([banner, *lines[:MAX_FORM_LINES]]):
+        raise ValueError(form)
     mark, *kinds = banner.split() or [""]
     form, field, symmetry = ([word.lower() for word in kinds] + [""] * 4)[1:4]
     if (
@@ -88,6 +94,24 @@ def read_matrix_market(path: Path) -> "coo_array":
         mirrored = i != j
         i, j, value = np.append(i, j[mirrored]), np.append(j, i[mirrored]), np.append(value, value[mirrored])
     return coo_array((value, (i, j)), shape=(rows, columns))
+
+
+def _other_matrix_form(lines: Sequence[str]) -> str:
+    """Return what is wrong with the first lines of a matrix that other programs write; empty if nothing is known."""
+    numbers = next((line for line in lines if line.strip() and not line.startswith("*")), "")
+    if lines[0].startswith("*") or _ABAQUS_ENTRY.match(numbers):
+        return (
+            "it is in Abaqus's form MATRIX INPUT (node, degree of freedom, node, degree of freedom, value), which does "
+            "not say the order of the degrees of freedom. Choose it, and save the matrix of those with mass by "
+            "scipy.io.mmwrite or numpy.savez"
+        )
+    if _ENTRY.match(lines[0]):
+        return (
+            'its entries lack the header of Matrix Market. Write above them "%%MatrixMarket matrix coordinate real '
+            'general" (or symmetric, if they are those of one triangle) and a line with the numbers of rows, columns '
+            "and entries"
+        )
+    return ""
 
 
 def given_or_read_matrix(name: str, given: NumbersOrPath) -> ArrayLike:

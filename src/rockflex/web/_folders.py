@@ -14,6 +14,7 @@ from typing import Any
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
 from rockflex._language import translated
+from rockflex._shown import first_texts_shown
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
 from rockflex.motion._record_info import unique_record_names
 from rockflex.web._limits import (
@@ -30,6 +31,7 @@ FIELD = "record.folder"  # of the messages
 MAX_STEM_LETTERS, MAX_SUFFIX_LETTERS = 70, 12  # letters of a name that are kept
 MAX_NAME_BYTES = 200  # of them, because file systems count bytes: most take 255 with the suffix
 MAX_LIST_BYTES = 500_000  # bytes of the list
+MAX_NAMED_FILES = 6  # of those of which the same was found
 FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f-\x9f]')
 ZIP_ENTRY = b"PK\x01\x02"  # before each name in the list of an archive
 DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, OSError)
@@ -333,7 +335,8 @@ def _folder_report(
         }
         for station in along.stations
     ]
-    return {"entries": entries, "stations": stations}
+    findings = [f"{each}: {first_texts_shown(files, MAX_NAMED_FILES)}" for each, files in along.findings.items()]
+    return {"entries": entries, "stations": stations, "findings": findings}
 
 
 def _folder_report_entry(entry: SurveyEntry) -> dict[str, Any]:

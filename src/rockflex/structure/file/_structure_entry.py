@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeA
 from pydantic import Field, SerializerFunctionWrapHandler, create_model, model_serializer, model_validator
 
 from rockflex._errors import InputError
-from rockflex._files import check_regular_file, checked_file_path
+from rockflex._files import check_regular_file, checked_file_path, unicode_text
 from rockflex._registry import registered_objects, source_checksum
 from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
@@ -559,13 +559,14 @@ def read_toml_file(file: Path, kind: str) -> dict[str, Any]:
     """
     check_regular_file(file)
     try:
-        return tomllib.loads(file.read_text("utf-8"))
+        return tomllib.loads(unicode_text(file.read_bytes()))
     except FileNotFoundError as error:
         raise InputError(f"The {kind} file {file} does not exist (working directory: {Path.cwd()}).") from error
     except OSError as error:
         raise InputError(f"The {kind} file {file} cannot be read: {error.strerror}.") from error
-    except ValueError as error:  # not TOML, or not UTF-8
-        raise InputError(f"{file} is not a valid TOML file: {shortened(str(error))}.") from error
+    except ValueError as error:  # not TOML, or in another encoding
+        hint = " Save it as UTF-8." if isinstance(error, UnicodeDecodeError) else ""
+        raise InputError(f"{file} is not a valid TOML file: {shortened(str(error))}.{hint}") from error
     except RecursionError as error:
         raise InputError(
             f"{file} is nested too deep to be read: brackets within brackets, more than any {kind} has."

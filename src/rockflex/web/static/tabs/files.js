@@ -71,10 +71,12 @@ export function folder(app, complain) {
   const rows = scrolled(t("Records given"), { class: "report" });
   const stations = scrolled(t("Recordings"), {});
   const notes = h("ul", { class: "notes" });
+  const findings = h("ul", { class: "notes" });
   const summary = h("p", { class: "answer", id: "taken" });
   const report = h("section", { id: "report", hidden: true },
     h("h2", {}, t("Your records")), summary, rows, notes,
-    h("details", {}, h("summary", {}, t("Recordings: which components belong together")), stations));
+    h("details", {}, h("summary", {}, t("Recordings: which components belong together")), stations),
+    h("details", {}, h("summary", {}, t("Units, time steps and components: what says so")), findings));
 
   function put(patch) {
     app.change({ record: patch });
@@ -121,6 +123,7 @@ export function folder(app, complain) {
     stations.replaceChildren(tableOf([t("recording"), t("horizontal"), t("vertical")], found.stations.map((each) => h("tr", {},
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
     notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
+    findings.replaceChildren(...found.findings.map((text) => h("li", {}, text)));
     upwards.hidden = !taken.some((entry) => entry.vertical);
   }
 
