@@ -175,6 +175,7 @@ def test_of_files_without_an_acceleration_all_are_named(mixed):
         ("lab.txt", BARE, "does not state the unit"),
         ("lab.csv", COLUMNS.replace(" (g)", ""), "does not state the unit"),
         ("lab.csv", COLUMNS.replace("acc (g)", "channel 1"), "does not state the unit"),
+        ("lab.csv", COLUMNS.replace("time (s),acc (g)", "left,right"), "does not state the unit"),
         ("rec.th", COLUMNS + "0.04,x\n", "line 6"),
         ("empty.txt", "", "is empty"),
     ],
