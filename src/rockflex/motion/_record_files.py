@@ -24,7 +24,8 @@ RECORD_SUFFIXES = (
     *(".mseed", ".miniseed", ".msd", ".sac", ".gse", ".gse2", ".evt"),
 )
 ARCHIVE_SUFFIXES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".z")
-SYSTEM_NAMES = ("__macosx", "thumbs.db", "ehthumbs.db", "desktop.ini")
+# Files of the system, and that of `rockflex select` beside the records that it writes.
+SYSTEM_NAMES = ("__macosx", "thumbs.db", "ehthumbs.db", "desktop.ini", "summary.json")
 HEAD_BYTES = 4096  # bytes of a file that tell a format
 SIGN_BYTES = 16384  # bytes of a file within which its numbers begin
 MINISEED = re.compile(rb"[\d ]{6}[DRQM] ")
@@ -40,7 +41,7 @@ class FolderFiles:
     others: list[Path] = field(default_factory=list[Path])  # no records by suffix and beginning
     archives: list[Path] = field(default_factory=list[Path])
     folders: dict[Path, int] = field(default_factory=dict[Path, int])  # with their numbers of files
-    hidden: list[Path] = field(default_factory=list[Path])  # files of the system, of which nobody need be told
+    hidden: list[Path] = field(default_factory=list[Path])  # of which nobody need be told
 
     def remarks(self) -> Iterator[str]:
         """Yield what is not looked into."""
