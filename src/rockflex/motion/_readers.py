@@ -21,6 +21,7 @@ from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._excel import is_excel_workbook, parse_excel
 from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
+from rockflex.motion._japan_csv import is_jma_csv, is_knet_csv, parse_jma_csv, parse_knet_csv
 from rockflex.motion._knet import is_knet, parse_knet
 from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
@@ -57,6 +58,8 @@ class RecordFormat:
 FORMATS = Catalogue[RecordFormat](
     (
         RecordFormat("K-NET", is_knet, parse_knet),
+        RecordFormat("K-NET CSV", is_knet_csv, parse_knet_csv),
+        RecordFormat("JMA", is_jma_csv, parse_jma_csv),
         RecordFormat("ESM", is_esm, parse_esm),
         RecordFormat("COSMOS", is_cosmos, parse_cosmos),
         RecordFormat("GeoNet", is_geonet, parse_geonet),
