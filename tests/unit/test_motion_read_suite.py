@@ -56,7 +56,9 @@ def test_read_suite_reads_a_directory(tmp_path):
 
 
 def test_read_suite_refuses(tmp_path):
-    with pytest.raises(InputError, match=r"no file ends in .at2.* in one of the formats K-NET, K-NET CSV, .*ESM, COSMOS"):
+    with pytest.raises(
+        InputError, match=r"no file ends in .at2.* in one of the formats K-NET, K-NET CSV, .*ESM, COSMOS"
+    ):
         read_suite(tmp_path)
     with pytest.raises(InputError, match=r"is not a directory. Give a directory or a list of files"):
         read_suite(tmp_path / "none")

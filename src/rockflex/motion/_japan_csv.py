@@ -28,7 +28,7 @@ SECTIONS = {
     "#Station": ("Station Code", "Station Lat.", "Station Lon.", "Station Height(m)"),
 }
 LABEL = re.compile(r"\s*+([^(]*+)\(([^)]*+)\)")  # N-S(gal)
-MAX_DRIFT = 0.5  # of a step, of a time from that by the frequency
+MAX_DRIFT, ROUNDING = 0.49, 0.0051  # of a step, and in s: of a time from that by the frequency
 
 
 def is_knet_csv(lines: list[str]) -> bool:
@@ -54,7 +54,7 @@ def parse_knet_csv(file: Path, lines: list[str]) -> list[GroundMotion]:
     labels = lines[start - 1].split(",")[TIME_COLUMNS:]
     rows = _rows(file, lines, start, TIME_COLUMNS + len(labels), skipped=1)
     dt = _step(file, rate.lstrip("#"), f"{quoted_line(rate_line - 1, lines[rate_line - 2])}, {rate.lstrip('#')}")
-    late = np.abs(rows[:, 0] - rows[0, 0] - dt.value * np.arange(len(rows))) > MAX_DRIFT * dt.value
+    late = np.abs(rows[:, 0] - rows[0, 0] - dt.value * np.arange(len(rows))) > max(MAX_DRIFT * dt.value, ROUNDING)
     if np.any(late):
         k = int(np.argmax(late))
         raise InputError(
