@@ -332,7 +332,7 @@ def test_table_and_reasons(folder):
     )
     assert "  RSN7_A-UP.AT2: vertical component\n" in result.stdout
     assert "  table.csv: a table about the records\n" in result.stdout
-    assert "  notes.txt: notes.txt holds no numbers" in result.stdout
+    assert "  notes.txt: holds no numbers" in result.stdout
     paired = invoke_survey(folder, "--vertical", "pair").stdout
     assert "4 taken, 2 left out" in paired
     assert "Taken, but:\n  MYG002.EW: without a vertical component\n" in paired

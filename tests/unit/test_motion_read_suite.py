@@ -126,6 +126,7 @@ NO_RECORDS = {
     "readme.txt": ("no numbers", "How to cite\n1. Acceleration in g\n2. Velocity in cm/s\n"),
     "year.txt": ("text", "Downloaded in\n2022\nfrom the archive, with NPTS and DT in the header\n"),
     "stories.csv": ("table", "story;drift;PFA\n1;0.01;0.2\n2;0.02;0.3\n3;0.015;0.4\n"),
+    "measures.csv": ("table", "PGA (g),PGV (cm/s),PGD (cm)\n0.1,10,2\n0.2,12,3\n0.1,9,1\n"),
     "sites.csv": ("no numbers", "name,country\nNRC,Italy\nACC,Italy\n"),
     "roof.disp": ("displacement", "".join(f"{0.01 * k} 0 1 2 3 4\n" for k in range(9))),
 }
@@ -157,12 +158,12 @@ def test_what_is_no_record_is_left_out_with_a_word(mixed, name):
 
 
 def test_of_files_without_an_acceleration_all_are_named(mixed):
-    with pytest.warns(RecordWarning, match="Left out: 11 files without an acceleration, ") as caught:
+    with pytest.warns(RecordWarning, match="Left out: 12 files without an acceleration, ") as caught:
         assert read_suite(mixed).names == ("A000",)
     assert len(caught) == 1
     (mixed / "A000.AT2").unlink()
     with pytest.raises(
-        InputError, match=r"^No record was given, only 11 files .*vel\.csv \(velocity\).*Give the files of"
+        InputError, match=r"^No record was given, only 12 files .*disp\.txt \(displacement\).*Give the files of"
     ):
         read_suite(mixed)
 
@@ -175,17 +176,18 @@ def test_of_files_without_an_acceleration_all_are_named(mixed):
         ("lab.txt", BARE, "does not state the unit"),
         ("lab.csv", COLUMNS.replace(" (g)", ""), "does not state the unit"),
         ("lab.csv", COLUMNS.replace("acc (g)", "channel 1"), "does not state the unit"),
+        ("lab.csv", COLUMNS.replace("time (s),acc (g)", "left,right"), "does not state the unit"),
         ("rec.th", COLUMNS + "0.04,x\n", "line 6"),
         ("empty.txt", "", "is empty"),
     ],
 )
 def test_a_record_that_cannot_be_read_is_an_error_beside_others(mixed, name, text, words):
     (mixed / name).write_text(text)
-    with pytest.raises(InputError, match=rf"1 of 13 files cannot be read\. .*{words}"):
+    with pytest.raises(InputError, match=rf"1 of 14 files cannot be read\. .*{words}"):
         read_suite(mixed)
     with pytest.warns(RecordWarning) as caught:
         assert read_suite(mixed, on_error="skip").names == ("A000",)
-    assert re.match(rf"Left out: 1 of 13 files cannot be read\..*{words}", str(caught[0].message))
+    assert re.match(rf"Left out: 1 of 14 files cannot be read\..*{words}", str(caught[0].message))
 
 
 def test_files_of_any_suffix_are_read_if_they_name_an_acceleration(tmp_path):
@@ -197,12 +199,13 @@ def test_files_of_any_suffix_are_read_if_they_name_an_acceleration(tmp_path):
         "disp.out": BARE,
         "photo.png": "\x89PNG\x00\x01",
         "readme.md": "Records of accelerations in g\n",
+        "page.html": "<html><p>Accelerations in g</p>\n1\n2\n3\n</html>\n",
         "matrix.mtx": "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 1\n1 2 1\n2 2 1\n",
     }
     for name, text in others.items():
         (tmp_path / name).write_text(text)
     with pytest.warns(
-        RecordWarning, match=r"^Not tried.*: disp\.out, matrix\.mtx, photo\.png, readme\.md\.$"
+        RecordWarning, match=r"^Not tried.*: disp\.out, matrix\.mtx, page\.html, photo\.png, readme\.md\.$"
     ) as caught:
         suite = read_suite(tmp_path)
     assert suite.names == ("a", "b", "c", "d", "e", "f.at2", "g", "h", "i")
@@ -368,8 +371,8 @@ def test_survey(folder_survey):
     ]  # fmt: skip
     assert {left[name] for name in ("CE13921.V2c", "MYG002.UD", "RSN9001_SOME_ABC-UP.AT2")} == {"vertical component"}
     assert "table about the records; it lists 2 files that are not there: RSN9002_" in left["_SearchResults.csv"]
-    assert left["lab.csv"].startswith("lab.csv does not state the unit of its acceleration")
-    assert left["notes.txt"].startswith("notes.txt holds no numbers")
+    assert left["lab.csv"].startswith("does not state the unit of its acceleration")
+    assert left["notes.txt"].startswith("holds no numbers")
     assert left["readme.md"] == left[".hidden.txt"] == "no record, by suffix and beginning"
     told = {entry.file: entry.reason for entry in survey.taken if entry.reason}
     assert list(told) == ["IT.NRC.HNE.ASC"]

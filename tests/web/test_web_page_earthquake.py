@@ -104,7 +104,8 @@ def test_a_folder_is_reported_and_a_record_of_it_is_simulated(visitor, folder, f
     cells = row.inner_text().split("\t")
     assert cells[2:8] == ["1.19", "0.01", "6.6", "12.1", "366", "RSN7 with vertical"]
     assert cells[8:] == ["0", "AT2", "RSN7_TEST000.AT2"]
-    assert "notes.txt holds no numbers" in page.locator('tr[data-file="notes.txt"]').inner_text()
+    assert "holds no numbers" in page.locator('tr[data-file="notes.txt"]').inner_text()
+    assert "unit: g (line" in page.locator("#report").text_content()  # folded
     assert page.locator('[data-given="RSN7_TEST000"]').get_attribute("aria-pressed") == "true"
     page.locator('[data-given="RSN7_TEST090"]').click()
     other = motion_of(folder, "RSN7_TEST090")

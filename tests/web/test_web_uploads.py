@@ -487,7 +487,7 @@ def test_damaged_requests_and_archives_are_refused(client) -> None:
     status, answer = give(client, body_of({"a.txt": b"no numbers\n"}))
     assert status == 422
     assert "none of the files is a horizontal record" in answer["errors"]["record.folder"]
-    assert "a.txt: a.txt holds no numbers" in answer["errors"]["record.folder"]
+    assert "a.txt: holds no numbers" in answer["errors"]["record.folder"]
     assert "holds no record" in give(client, body_of({"a.png": b"x"}))[1]["errors"]["record.folder"]
     status, answer = give(client, body_of(GIVEN), "?dt=fast")
     assert answer["errors"]["record.folder"] == "the sampling step must be a number in s, but 'fast' was given."

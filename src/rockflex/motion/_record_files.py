@@ -122,7 +122,8 @@ def _begins_as_record(file: Path) -> bool:
     if lines and is_of_a_network(lines):
         return True
     lines = (_text.decoded_text(content) or "").splitlines()
-    return has_rows_of_numbers(lines) and names_acceleration(file, lines)
+    markup = bool(lines) and lines[0].lstrip().startswith("<")  # a page of a browser
+    return not markup and has_rows_of_numbers(lines) and names_acceleration(file, lines)
 
 
 def fault_of_file(file: Path, error: InputError) -> InputError:

@@ -12,6 +12,10 @@ from rockflex.motion import _text
 from rockflex.motion._header import MAX_LINE, MAX_STEP, MIN_STEP, Lines, header_of_lines
 from rockflex.motion._labels import ACCELERATION, parse_label
 
+OF_RECORDS = re.compile(
+    r"\b(?:PG[AVD]|magnitude|M_?w|R_?(?:rup|jb|epi)|V_?s_?30|RSN|stor(?:e?y|ies)|floor|level|scale[ _]?factor)\b",
+    re.IGNORECASE,
+)
 MIN_ROWS = 3  # of numbers; a record needs as many samples
 MAX_HEADER_LINES = 100
 
@@ -36,9 +40,12 @@ def names_acceleration(file: Path, lines: Sequence[str]) -> bool:
 def is_table_of_something_else(file: Path, table: _text.NumericTable) -> bool:
     """Return whether columns have labels of which none may be that of an acceleration, nor a line above them.
 
+    A column beside others without a time, such as PGA or magnitude, means a table of records or floors.
     A column by itself, or beside one that increases as times do, may be a record whatever its label.
     """
     labels = [parse_label(text) for text in table.labels]
+    if any(map(OF_RECORDS.search, table.labels)) and not any(each.kind == "time" for each in labels):
+        return True
     unknown = all(each.kind in ("unknown", "row number") and each.unit is None for each in labels)
     if not labels or not unknown or _say_acceleration(file, table.head_lines):
         return False

@@ -184,7 +184,7 @@ def survey_records(
     >>> survey
     RecordSurvey('survey', 1 taken, 2 left out)
     >>> [(entry.file, entry.reason[:21]) for entry in survey.left_out]
-    [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'notes.txt holds no nu')]
+    [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'holds no numbers: a r')]
     """
     _read_suite.check_vertical_option(vertical)
     folder = record_files(paths)
@@ -256,7 +256,8 @@ def _survey_entries(
         )
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
     if each.fault is not None:
-        reason = str(each.fault).replace(str(each.file), each.file.name)
+        # The entry names the file, and files of the same reason share a line where it is printed.
+        reason = str(each.fault).replace(str(each.file), each.file.name).removeprefix(each.file.name).lstrip(" ,:")
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason)]
     return [
         SurveyEntry(
