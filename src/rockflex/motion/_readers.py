@@ -26,6 +26,7 @@ from rockflex.motion._gmprocess import NETWORKS, parse_network
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._japan_csv import is_jma_csv, is_knet_csv, parse_jma_csv, parse_knet_csv
 from rockflex.motion._knet import is_knet, parse_knet
+from rockflex.motion._recorded import MEAN_SUBTRACTED
 from rockflex.motion._smc import is_smc, parse_smc
 from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 
@@ -74,7 +75,6 @@ FORMATS = Catalogue[RecordFormat](
 )
 PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
 PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
-MEAN_SUBTRACTED = "mean subtracted"  # in `RecordInfo.processing`
 MAX_PEAK_MISMATCH = 0.2  # relative difference that only a wrong scale or another record explains
 
 
