@@ -29,6 +29,8 @@ def test_samples_without_blanks_between_them(write):
         'quantity: acceleration (line 1: "2 CORRECTED ACCELEROGRAM")',
         "unit: cm/s2 (format SMC)",
     ]
+    down = rf.read_motion(write(smc([-each for each in SAMPLES])))
+    assert down.metadata.stated_pga == pytest.approx(down.pga)
     assert rf.read_motion(write(smc(first="1 UNCORRECTED ACCELEROGRAM"))).metadata.processing == "uncorrected"
 
 

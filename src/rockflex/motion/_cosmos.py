@@ -16,13 +16,8 @@ from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import (
-    FoundComponent,
-    RecordInfo,
-    acceleration_findings,
-    component_record_names,
-    found_component,
-)
+from rockflex.motion._record_info import FoundComponent, RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, UNCORRECTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit, acceleration_unit
 
 # Table 2 of the format: the units of accelerations.
@@ -49,7 +44,7 @@ DIRECTIONS = {
     700: "H1",
     701: "H2",
 }
-RAW, UNCORRECTED = 0, 1  # stages of processing, in place 1 of the integer header
+STAGES = (0, 1)  # of processing, in place 1 of the integer header: raw and uncorrected
 MICROVOLT = 1e-6
 MAX_VS30_KM_S = 10.0  # V_s30 is in km/s below it, and in m/s above it
 FIRST_LINE = re.compile(r"\(Format\s*+v[\d.]++\s*+with\s*+(\d{1,3})\s*+text lines\)", re.IGNORECASE)
@@ -138,7 +133,7 @@ def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> Evi
     return Evidence(float(f"{dt:.12g}"), said)
 
 
-def channel_record_info(file: Path, channel: CosmosChannel, component: FoundComponent) -> RecordInfo:
+def channel_record_info(channel: CosmosChannel, unit: AccelerationUnit) -> RecordInfo:
     """Return the metadata in the headers."""
     lines = [*channel.text, *[""] * 13]
     code = re.search(r"Code:\s*+(\w++)-(\S++)", lines[4])
@@ -146,10 +141,8 @@ def channel_record_info(file: Path, channel: CosmosChannel, component: FoundComp
     magnitude, scale = _channel_magnitude(channel)
     peak = channel.real(64)
     vs30 = _text.non_negative_or_none(channel.real(4))
-    unit, n_samples = channel_unit(file, channel), 0 if channel.values is None else channel.values.size
-    dt = channel_time_step(file, channel, n_samples)
-    uncorrected = channel.counts or channel.integer(1) in (RAW, UNCORRECTED)
-    done = ["uncorrected"] * uncorrected + ["mean subtracted"] * channel.counts
+    uncorrected = channel.counts or channel.integer(1) in STAGES
+    done = [UNCORRECTED] * uncorrected + [MEAN_SUBTRACTED] * channel.counts
     return RecordInfo(
         event=event,
         year=year,
@@ -157,19 +150,14 @@ def channel_record_info(file: Path, channel: CosmosChannel, component: FoundComp
         magnitude_type=scale,
         epicentral_km=_text.non_negative_or_none(channel.real(17)),
         vs30=None if not vs30 else 1e3 * vs30 if vs30 < MAX_VS30_KM_S else vs30,
-        component=component.name,
-        direction=component.direction,
-        azimuth=component.azimuth,
         station=code and code[2],
         network=code and code[1],
         location=lines[8].partition("Location:")[2].strip() or None,
         start_time=_channel_start_time(channel, lines[7]),
-        source=file.name,
         source_format="COSMOS",
         # The peak of raw counts contains their offset.
-        stated_pga=None if not peak or channel.counts else abs(peak) * unit.value.si,
+        stated_pga=None if not peak or channel.counts else abs(peak) * unit.si,
         processing="; ".join(done) or None,
-        findings=acceleration_findings(channel.announced.said, unit, dt, component),
     )
 
 
@@ -233,16 +221,16 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
             "the file of the acceleration."
         )
     components = [_channel_component(file, each, several=len(channels) > 1) for each in channels]
-    infos = [channel_record_info(file, each, found) for each, found in zip(channels, components, strict=True)]
-    names = component_record_names(file.stem, [info.component or "channel" for info in infos])
+    names = component_record_names(file.stem, [each.name or "channel" for each in components])
     motions: list[GroundMotion] = []
-    for channel, info, name in zip(channels, infos, names, strict=True):
+    for channel, component, name in zip(channels, components, names, strict=True):
         values = np.zeros(0) if channel.values is None else channel.values
         if channel.counts and values.size:
             values = values - values.mean()
-        unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
-        remedy = "Check the units in the integer header."
-        motions.append(_text.motion_from_samples(file, values, unit.value, step.value, info, remedy, name))
+        unit, dt = channel_unit(file, channel), channel_time_step(file, channel, values.size)
+        info, remedy = channel_record_info(channel, unit.value), "Check the units in the integer header."
+        said = channel.announced.said
+        motions.append(recorded_motion(file, values, said, unit, dt, component, info, remedy, name))
     return motions
 
 

@@ -16,22 +16,16 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._gmprocess import is_of_another_network
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import (
-    RecordInfo,
-    acceleration_findings,
-    component_record_names,
-    found_component,
-    printed_peak,
-)
+from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import UNCORRECTED, printed_peak, recorded_motion
 from rockflex.motion._units import NUMBER, AccelerationUnit, acceleration_unit
 
 FIRST_LINE = re.compile(r"\s*+(?:UN)?+CORRECTED ACCELEROGRAM\b")
-UNCORRECTED = "UNCORRECTED ACCELEROGRAM DATA"  # in the first line of V1, the second one of V2, the third one of V3
+V1_MARK = "UNCORRECTED ACCELEROGRAM DATA"  # in the first line of V1, the second one of V2, the third one of V3
 SPECTRA = "RESPONSE AND FOURIER AMPLITUDE SPECTRA"  # V3
 END = "/&"  # begins the line after a channel
 V1_LINES, V2_LINES = 13, 25  # of text
@@ -45,9 +39,9 @@ STEP = re.compile(rf"\bEQUALLY[- ]SPACED\s++(?:AT|INTERVALS OF)\s++({NUMBER})\s*
 RATE = re.compile(rf"\bAT\s++({NUMBER})\s*+(?:PTS|POINTS|SAMPLES)/SEC", re.IGNORECASE)
 DATA_UNIT = re.compile(r"\bUNITS:\s*+([^)]++)\)|\bIN\s++(?:UNITS OF\s++)?+([\w/*^]++)", re.IGNORECASE)
 TEXT_UNIT = re.compile(r"\bUNITS\b.*?\b(?:AND|IS)\s++([\w/*^]++)", re.IGNORECASE)
-FORMAT = re.compile(r"\((\d{1,2})[FE](\d{1,2})\b", re.IGNORECASE)
+FORMAT = re.compile(r"\(([1-9]\d?+)[FE]([1-9]\d?+)\b", re.IGNORECASE)
 CHANNEL = re.compile(r"\s*+CHAN\w*+\s*+\d*+\s*+:\s*+(?:(\d{1,3})\s*+DEG|(\w++))", re.IGNORECASE)
-COUNT = re.compile(r"\bNO\. OF POINTS\s*+=\s*+(\d{1,9})", re.IGNORECASE)
+COUNT = re.compile(r"\bNO\. OF POINTS\s*+=\s*+([1-9]\d{0,8}+)", re.IGNORECASE)
 PEAK = re.compile(rf"\b(?:PEAK\s++ACCEL\w*+|(?<!UNCOR )MAX)\s*+=\s*+({NUMBER})\s*+([\w/*^]++)", re.IGNORECASE)
 MAGNITUDE = re.compile(r"\bM([WLS])\s*+=\s*+(\d\.\d++)", re.IGNORECASE)
 TIME_ROUNDING = 1.1e-3  # s, of the difference of two printed times
@@ -64,7 +58,7 @@ class Channel:
     @property
     def corrected(self) -> bool:
         """Whether it is of V2."""
-        return UNCORRECTED not in self.lines[0].upper()
+        return V1_MARK not in self.lines[0].upper()
 
     @property
     def text(self) -> list[str]:
@@ -101,7 +95,7 @@ def is_csmip(lines: list[str]) -> bool:
     """Return whether the lines begin as a CSMIP file does; networks that took its layout over say their names."""
     first = [line[:MAX_LINE].upper() for line in lines[:3]]
     begins = FIRST_LINE.match(first[0]) or SPECTRA in first[0]
-    return bool(begins) and any(UNCORRECTED in line for line in first) and not is_of_another_network(lines)
+    return bool(begins) and any(V1_MARK in line for line in first) and not is_of_another_network(lines)
 
 
 def parse_csmip(file: Path, lines: list[str]) -> list[GroundMotion]:
@@ -112,9 +106,11 @@ def parse_csmip(file: Path, lines: list[str]) -> list[GroundMotion]:
             "file of V2."
         )
     ends = [i for i, line in enumerate(lines) if line.startswith(END)]
-    pairs = pairwise([-1, *ends, len(lines)])
-    parts = [Channel(file, begin + 1, lines[begin + 1 : end]) for begin, end in pairs]
-    channels = [each for each in parts if any(line.strip() for line in each.lines)]
+    channels: list[Channel] = []
+    for end, other in pairwise([-1, *ends, len(lines)]):
+        begin = next((i for i in range(end + 1, other) if lines[i].strip()), None)
+        if begin is not None:
+            channels.append(Channel(file, begin, lines[begin:other]))
     stated = [each.stated(CHANNEL) for each in channels]
     words = [
         [] if each is None else [Evidence(each.value[2] or f"{int(each.value[1]):03d}", each.said)] for each in stated
@@ -125,20 +121,15 @@ def parse_csmip(file: Path, lines: list[str]) -> list[GroundMotion]:
     for channel, component, name in zip(channels, components, names, strict=True):
         samples = _samples(channel)
         peak = channel.stated(PEAK)
+        unit, dt = samples.unit, samples.dt
         info = replace(
             _record_info(channel),
-            component=component.name,
-            direction=component.direction,
-            azimuth=component.azimuth,
-            source=file.name,
             source_format="CSMIP",
-            stated_pga=peak and printed_peak(peak.value[1], peak.value[2], samples.values, samples.unit.value),
-            processing=None if channel.corrected else "uncorrected",
-            findings=acceleration_findings(samples.said, samples.unit, samples.dt, component),
+            stated_pga=peak and printed_peak(peak.value[1], peak.value[2], samples.values, unit.value),
+            processing=None if channel.corrected else UNCORRECTED,
         )
         remedy = "Check the unit in the line before the samples."
-        values, unit, dt = samples.values, samples.unit.value, samples.dt.value
-        motions.append(_text.motion_from_samples(file, values, unit, dt, info, remedy, name))
+        motions.append(recorded_motion(file, samples.values, samples.said, unit, dt, component, info, remedy, name))
     return motions
 
 

@@ -16,14 +16,15 @@ from rockflex._shown import shown
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, acceleration_findings, found_component
-from rockflex.motion._units import AccelerationUnit, acceleration_unit
+from rockflex.motion._record_info import RecordInfo, found_component
+from rockflex.motion._recorded import UNCORRECTED, recorded_motion
+from rockflex.motion._units import acceleration_unit
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
 FIRST_KEYS = ("EVENT_NAME:", "EVENT_ID:")
 TADAS_KEY = "AAD_"
 ACCELERATION = re.compile(r"(?:(?:UN)?PROCESSED |(?:UN)?CORRECTED |CONVERTED |RAW )?ACCELERATION")
-UNCORRECTED = re.compile(r"\b(?:UNPROCESSED|UNCORRECTED|RAW|UNFILTERED|BASELINE NOT REMOVED)\b")
+NOT_CORRECTED = re.compile(r"\b(?:UNPROCESSED|UNCORRECTED|RAW|UNFILTERED|BASELINE NOT REMOVED)\b")
 EVENT_TIME = re.compile(r"(\d{4})(\d{2})(\d{2})(\d{2})(\d{2})\d{2}.*+")
 START_TIME = re.compile(r"(\d{4})/?+(\d{2})/?+(\d{2})[_ ](\d{2}):?+(\d{2}):?+(\d{2}(?:\.\d{1,6})?)")
 
@@ -81,13 +82,15 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     )
     if values.size != n_samples:
         raise _text.wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
-    info = _esm_record_info(file, lines, header, unit, dt)
-    return [_text.motion_from_samples(file, values, unit, dt, info, "Check UNITS in the header.")]
-
-
-def _esm_record_info(file: Path, lines: list[str], header: Header, unit: AccelerationUnit, dt: float) -> RecordInfo:
     key = "STREAM" if header["STREAM"] else "COMPONENT"  # of ITACA before DYNA
     component = found_component(file, *([Evidence(header[key], header.said(key))] if header[key] else []))
+    quantity = header.said("DATA_TYPE" if kind else "UNITS")
+    stated = Evidence(unit, header.said("UNITS")), Evidence(dt, header.said("SAMPLING_INTERVAL_S"))
+    info = _esm_record_info(lines, header)
+    return [recorded_motion(file, values, quantity, *stated, component, info, "Check UNITS in the header.")]
+
+
+def _esm_record_info(lines: list[str], header: Header) -> RecordInfo:
     moment, local = (_text.non_negative_or_none(header.number(f"MAGNITUDE_{scale}")) for scale in "WL")
     year = header["EVENT_DATE_YYYYMMDD"][:4]
     stamp = START_TIME.match(header["DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"])
@@ -97,13 +100,6 @@ def _esm_record_info(file: Path, lines: list[str], header: Header, unit: Acceler
     when = EVENT_TIME.fullmatch(re.sub(r"[/:]", "", header["EVENT_DATE_YYYYMMDD"] + header["EVENT_TIME_HHMMSS"]))
     tadas = lines[0].lstrip().startswith(TADAS_KEY)
     kinds = " ".join([lines[0].replace("_", " ") if tadas else "", header["DATA_TYPE"], header["BASELINE_CORRECTION"]])
-    quantity = header.said("DATA_TYPE" if header["DATA_TYPE"] else "UNITS")
-    found = acceleration_findings(
-        quantity,
-        Evidence(unit, header.said("UNITS")),
-        Evidence(dt, header.said("SAMPLING_INTERVAL_S")),
-        component,
-    )
     return RecordInfo(
         # Many earthquakes are named after their region, so the time of origin is added.
         event=name if name is None or when is None else "{} {}-{}-{} {}:{}".format(name, *when.groups()),
@@ -112,17 +108,12 @@ def _esm_record_info(file: Path, lines: list[str], header: Header, unit: Acceler
         magnitude_type=None if moment is None and local is None else "ML" if moment is None else "Mw",
         epicentral_km=_text.non_negative_or_none(header.number("EPICENTRAL_DISTANCE_KM")),
         vs30=_text.non_negative_or_none(header.number("VS30_M/S")) or None,
-        component=component.name,
-        direction=component.direction,
-        azimuth=component.azimuth,
         station=header["STATION_CODE"] or None,
         network=header["NETWORK"] or None,
         location=header["LOCATION"] or None,
         start_time=None if stamp is None else "{}-{}-{}T{}:{}:{}+00:00".format(*stamp.groups()),
-        source=file.name,
         source_format="TADAS" if tadas else "ESM" if header["HEADER_FORMAT"] else "ITACA",
         stated_pga=None if peak is None else 0.01 * abs(peak),
-        processing="uncorrected" if UNCORRECTED.search(kinds.upper()) else None,
+        processing=UNCORRECTED if NOT_CORRECTED.search(kinds.upper()) else None,
         event_id=event[1] if event[1] not in ("", "None") else None,
-        findings=found,
     )

@@ -16,14 +16,9 @@ from rockflex._errors import InputError
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._fixed_width import check_lines_follow, fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import (
-    FoundComponent,
-    RecordInfo,
-    acceleration_findings,
-    component_record_names,
-    found_component,
-)
-from rockflex.motion._text import motion_from_samples, non_negative_or_none
+from rockflex.motion._record_info import FoundComponent, RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import UNCORRECTED, recorded_motion
+from rockflex.motion._text import non_negative_or_none
 from rockflex.motion._units import AccelerationUnit
 
 TEXT_LINES, N_INTEGERS, N_REALS = 16, 40, 60
@@ -78,9 +73,10 @@ def parse_geonet(file: Path, lines: list[str]) -> list[GroundMotion]:
         else:
             i += 1
     names = component_record_names(file.stem, [each.found.name or "" for each in found])
-    remedy = "The format states mm/s²: download the record again."
+    said, remedy = "format GeoNet", "The format states mm/s²: download the record again."
+    unit = Evidence(UNIT, said)
     return [
-        motion_from_samples(file, each.values, UNIT, each.dt.value, _info(file, each), remedy, name)
+        recorded_motion(file, each.values, said, unit, each.dt, each.found, _info(each), remedy, name)
         for each, name in zip(found, names, strict=True)
     ]
 
@@ -134,7 +130,7 @@ def _component(file: Path, lines: list[str], begin: int) -> tuple[Component, int
     return Component(text, whole, reals, values, dt, component, first[1] is not None), i
 
 
-def _info(file: Path, component: Component) -> RecordInfo:
+def _info(component: Component) -> RecordInfo:
     origin = _time(component, 1, 2, 3, 4, 5)
     site = SITE_LINE.match(component.text[1][:80])
     first = _first(component.text[0])
@@ -147,18 +143,13 @@ def _info(file: Path, component: Component) -> RecordInfo:
         magnitude=None if magnitude is None else component.real(magnitude),
         magnitude_type=None if magnitude is None else MAGNITUDES[magnitude],
         epicentral_km=None if origin is None else non_negative_or_none(float(component.integer(30))),
-        component=component.found.name,
-        direction=component.found.direction,
-        azimuth=component.found.azimuth,
         station=None if site is None else site[1],
         network="NZ",
         location=None if first is None else first[2],
         start_time=_start_time(component),
-        source=file.name,
         source_format="GeoNet",
         stated_pga=abs(peak) * UNIT.si or None,
-        processing="uncorrected" if component.uncorrected else None,
-        findings=acceleration_findings("format GeoNet", Evidence(UNIT, "format GeoNet"), component.dt, component.found),
+        processing=UNCORRECTED if component.uncorrected else None,
     )
 
 

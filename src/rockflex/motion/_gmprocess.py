@@ -17,16 +17,10 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import (
-    RecordInfo,
-    acceleration_findings,
-    component_record_names,
-    found_component,
-    printed_peak,
-)
+from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import UNCORRECTED, printed_peak, recorded_motion
 from rockflex.motion._units import NUMBER, AccelerationUnit
 
 PACKAGE = "gmprocess"
@@ -107,18 +101,17 @@ def parse_network(file: Path, lines: list[str], *, network: Network, use_gmproce
         dt = _checked_step(file, lines, trace, values.size)
         component = found_component(file, Evidence(channel, f"channel {channel}"), several=len(traces) > 1)
         azimuth = float(trace.stats.standard.horizontal_orientation)
+        along = component.direction == "horizontal" and np.isfinite(azimuth)
+        component = replace(component, azimuth=azimuth if along else None)
         info = replace(
             _trace_info(trace),
-            component=channel,
-            direction=component.direction,
-            azimuth=azimuth if component.direction == "horizontal" and np.isfinite(azimuth) else None,
-            source=file.name,
             source_format=network.name,
             stated_pga=printed_peak(*peaks[k], values, UNIT) if peaks else None,
-            findings=acceleration_findings(f"format {network.name}", Evidence(UNIT, PACKAGE), dt, component),
         )
-        remedy = "Check the unit in the header."
-        motions.append(_text.motion_from_samples(file, values, UNIT, dt.value, info, remedy, name))
+        quantity, remedy = f"format {network.name}", "Check the unit in the header."
+        motions.append(
+            recorded_motion(file, values, quantity, Evidence(UNIT, PACKAGE), dt, component, info, remedy, name)
+        )
     return motions
 
 
@@ -209,7 +202,7 @@ def _trace_info(trace: Any) -> RecordInfo:
     begin = stats.starttime.datetime
     known = begin.year > EPOCH_YEAR
     done = [
-        *(["uncorrected"] if "uncorrected" in str(stats.standard.process_level) else []),
+        *([UNCORRECTED] if UNCORRECTED in str(stats.standard.process_level) else []),
         *(["resampled to equal steps"] if trace.get_provenance("resample") else []),
     ]
     return RecordInfo(

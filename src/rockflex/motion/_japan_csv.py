@@ -17,7 +17,8 @@ from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._knet import JAPAN_OFFSET, knet_record_info
-from rockflex.motion._record_info import RecordInfo, acceleration_findings, component_record_names, found_component
+from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import recorded_motion
 from rockflex.motion._units import acceleration_unit
 
 KNET_MARK, JMA_MARK = "#K-NET CSV", "SITE CODE="
@@ -151,14 +152,7 @@ def _motions(
                 f"{file}: a component with its unit is expected, such as N-S(gal), but found {shown(label)} ({said})."
             )
         component = found_component(file, Evidence(part[1].strip(), said), several=len(labels) > 1)
-        found = replace(
-            info,
-            source=file.name,
-            component=component.name,
-            direction=component.direction,
-            azimuth=component.azimuth,
-            findings=acceleration_findings(f"format {info.source_format}", Evidence(unit, unit_said), dt, component),
-        )
-        remedy = "Check the unit in the header."
-        motions.append(_text.motion_from_samples(file, samples[:, k], unit, dt.value, found, remedy, name))
+        quantity, remedy = f"format {info.source_format}", "Check the unit in the header."
+        stated = Evidence(unit, unit_said), dt
+        motions.append(recorded_motion(file, samples[:, k], quantity, *stated, component, info, remedy, name))
     return motions

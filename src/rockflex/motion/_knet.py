@@ -16,7 +16,8 @@ from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, acceleration_findings, found_component, stem_with_component
+from rockflex.motion._record_info import RecordInfo, found_component, stem_with_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit
 
 HEADER_LINES = 17  # the last one is "Memo."
@@ -64,23 +65,13 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     location = None if direction not in CHANNELS else "borehole" if direction in "123" else "surface"
     info = replace(
         knet_record_info(header),
-        component=component.name,
-        direction=component.direction,
-        azimuth=component.azimuth,
         location=location,
-        source=file.name,
         source_format="KiK-net" if location else "K-NET",
-        processing="mean subtracted",
-        findings=acceleration_findings(
-            "format K-NET",
-            Evidence(unit, said["Scale Factor"]),
-            Evidence(1.0 / rate, said["Sampling Freq(Hz)"]),
-            component,
-        ),
+        processing=MEAN_SUBTRACTED,
     )
-    remedy = "Check the scale factor in line 14."
-    name = stem_with_component(file)
-    return [_text.motion_from_samples(file, counts - counts.mean(), unit, 1.0 / rate, info, remedy, name)]
+    stated = Evidence(unit, said["Scale Factor"]), Evidence(1.0 / rate, said["Sampling Freq(Hz)"])
+    remedy, name = "Check the scale factor in line 14.", stem_with_component(file)
+    return [recorded_motion(file, counts - counts.mean(), "format K-NET", *stated, component, info, remedy, name)]
 
 
 def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:

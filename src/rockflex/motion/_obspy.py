@@ -2,6 +2,7 @@
 
 import io
 import warnings
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,8 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion._findings import Evidence
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, acceleration_findings, component_record_names, found_component
-from rockflex.motion._text import motion_from_samples
+from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
@@ -93,23 +94,20 @@ def _motion_of_trace(
     )
     dt = Evidence(float(f"{float(trace.stats.delta):.12g}"), f"header of {form}")
     info = RecordInfo(
-        component=channel or None,
-        direction=component.direction,
-        azimuth=component.azimuth if len(channel) == 3 else None,
         station=str(trace.stats.station).strip() or None,
         network=str(trace.stats.network).strip() or None,
         location=str(trace.stats.location).strip() or None,
         start_time=f"{trace.stats.starttime.datetime.isoformat()}+00:00",
         year=trace.stats.starttime.year,
-        source=file.name,
         source_format=form,
-        processing="mean subtracted" if form in CALIBRATED else None,
-        findings=acceleration_findings(quantity or unit.said, unit, dt, component),
+        processing=MEAN_SUBTRACTED if form in CALIBRATED else None,
     )
     values = np.asarray(trace.data, dtype=np.float64)
     if form in CALIBRATED:
         values = values - values.mean()
-    return motion_from_samples(file, values, unit.value, dt.value, info, "Check the value of one count.", name)
+    component = replace(component, name=channel or None, azimuth=component.azimuth if len(channel) == 3 else None)
+    remedy = "Check the value of one count."
+    return recorded_motion(file, values, quantity or unit.said, unit, dt, component, info, remedy, name)
 
 
 def _quantity_of_trace(file: Path, trace: Any, form: str, channel: str) -> str:

@@ -29,6 +29,7 @@ from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, 
 from rockflex.motion._japan_csv import is_jma_csv, is_knet_csv, parse_jma_csv, parse_knet_csv
 from rockflex.motion._knet import is_knet, parse_knet
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._recorded import MEAN_SUBTRACTED
 from rockflex.motion._sequence import find_sequence, motion_of_sequence
 from rockflex.motion._smc import is_smc, parse_smc
 
@@ -78,7 +79,6 @@ FORMATS = Catalogue[RecordFormat](
 PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
 PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
 LIKE_GRAVITY = (0.8, 1.2)  # g; no earthquake has such a mean
-MEAN_SUBTRACTED = "mean subtracted"  # in `RecordInfo.processing`
 MAX_PEAK_MISMATCH = 0.2  # relative difference that only a wrong scale or another record explains
 
 

@@ -5,11 +5,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-
-from rockflex._arrays import Array
 from rockflex.motion._findings import Evidence, Finding, settled
-from rockflex.motion._units import AccelerationUnit, acceleration_unit
 
 Direction = Literal["horizontal", "vertical", "down"]
 CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
@@ -238,31 +234,6 @@ def _joined_direction(file: Path) -> Direction | None:
     stem = COPY_SUFFIX.sub("", file.stem)
     from_peer = file.suffix.lower() == ".at2" or re.match(r"RSN\d", file.name, re.IGNORECASE)
     return _vertical_direction(stem) if from_peer and JOINED_SUFFIX.fullmatch(stem) else None
-
-
-def printed_peak(number: str, unit: str, values: Array, values_unit: AccelerationUnit) -> float | None:
-    """Return a peak that a header prints, in m/s²; that of the samples, if it rounds to the printed one.
-
-    Few digits would otherwise look like another record. None if the unit is none of acceleration.
-    """
-    known = acceleration_unit(unit)
-    if known is None:
-        return None
-    stated, half = abs(float(number)), 0.5 * 10.0 ** -len(number.partition(".")[2])
-    peak = float(np.max(np.abs(values), initial=0.0)) * values_unit.si / known.si
-    return (peak if abs(peak - stated) <= 1.001 * half else stated) * known.si
-
-
-def acceleration_findings(
-    quantity: str, unit: Evidence[AccelerationUnit], dt: Evidence[float], component: FoundComponent
-) -> tuple[Finding, ...]:
-    """Return what a reader found about a record of acceleration; `quantity` says that it is one."""
-    return (
-        Finding("quantity", "acceleration", quantity),
-        unit.finding("unit"),
-        dt.finding("time step", f"{dt.value:g} s"),
-        *component.findings,
-    )
 
 
 def component_azimuth(component: str | None) -> float | None:

@@ -14,7 +14,8 @@ from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._fixed_width import fixed_width_numbers
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, acceleration_findings, found_component
+from rockflex.motion._record_info import RecordInfo, found_component
+from rockflex.motion._recorded import UNCORRECTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit
 
 FIRST_LINE = re.compile(r"\s*+[1-9]\s++((?:(UN)?+CORRECTED\s++)?+ACCELERO|VELOC|DISPL|RESPONSE|FOURIER)", re.IGNORECASE)
@@ -82,15 +83,11 @@ def parse_smc(file: Path, lines: list[str]) -> list[GroundMotion]:
         magnitude=real[MAGNITUDES[kind]] if kind else None,
         magnitude_type=kind,
         epicentral_km=distance,
-        component=component.name,
-        direction=component.direction,
-        azimuth=component.azimuth,
         station=lines[2].strip() or None,
         network="US" if "USGS" in lines[7] else None,
-        source=file.name,
         source_format="SMC",
         stated_pga=UNIT.si * max(peaks) if peaks else None,
-        processing="uncorrected" if first[2] else None,
-        findings=acceleration_findings(quoted_line(1, lines[0]), Evidence(UNIT, "format SMC"), dt, component),
+        processing=UNCORRECTED if first[2] else None,
     )
-    return [_text.motion_from_samples(file, values, UNIT, dt.value, info, "Download the record again.")]
+    quantity, unit = quoted_line(1, lines[0]), Evidence(UNIT, "format SMC")
+    return [recorded_motion(file, values, quantity, unit, dt, component, info, "Download the record again.")]
