@@ -13,7 +13,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.motion import _text
-from rockflex.motion._findings import Evidence, quoted_line, settled
+from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import FoundComponent, RecordInfo, component_record_names, found_component
@@ -216,7 +216,7 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
     channels = [each for each in found if each.values is not None]
     if not channels:
         others = [other for each in found for other in each.others]
-        raise InputError(
+        raise NoAccelerationError(
             f"{file} is a COSMOS file without a series of acceleration: it holds {'; '.join(others) or 'none'}. Give "
             "the file of the acceleration."
         )

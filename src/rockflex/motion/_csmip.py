@@ -16,7 +16,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion._findings import Evidence, quoted_line, settled
+from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._gmprocess import is_of_another_network
 from rockflex.motion._ground_motion import GroundMotion
@@ -101,9 +101,10 @@ def is_csmip(lines: list[str]) -> bool:
 def parse_csmip(file: Path, lines: list[str]) -> list[GroundMotion]:
     """Build the motions of all channels; velocities and displacements are passed over."""
     if SPECTRA in lines[0].upper():
-        raise InputError(
+        raise NoAccelerationError(
             f"{file} holds response spectra ({quoted_line(1, lines[0])}), but an acceleration is expected. Give the "
-            "file of V2."
+            "file of V2.",
+            found="spectrum",
         )
     ends = [i for i, line in enumerate(lines) if line.startswith(END)]
     channels: list[Channel] = []
@@ -141,7 +142,7 @@ def _samples(channel: Channel) -> Samples:
     if place is None or head is None:
         return _paired_samples(channel)
     if "ACCEL" not in head.value[0].upper():
-        raise InputError(f"{file}: an acceleration is expected, but found {head.said}. Give the file of V2.")
+        raise NoAccelerationError(f"{file}: an acceleration is expected, but found {head.said}. Give the file of V2.")
     count, form = int(head.value[1]), channel.stated(FORMAT, place)
     columns = int(form.value[1]) if form else COLUMNS
     width = int(form.value[2]) if form else _width(lines, place + 1, min(count, columns))

@@ -14,7 +14,7 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import _text
-from rockflex.motion._findings import Evidence, quoted_line
+from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, found_component
 from rockflex.motion._recorded import UNCORRECTED, recorded_motion
@@ -61,9 +61,10 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     header = Header(lines[:start])
     kind = header["DATA_TYPE"].upper()
     if kind and not ACCELERATION.fullmatch(kind):
-        raise InputError(
+        raise NoAccelerationError(
             f"{file}: an acceleration is expected, but DATA_TYPE is {kind[:40]!r} ({header.said('DATA_TYPE')}). Use "
-            "the file of the acceleration, whose name contains ACC."
+            "the file of the acceleration, whose name contains ACC.",
+            found=kind[:40].lower(),
         )
     dt, n_samples = header.number("SAMPLING_INTERVAL_S"), header.number("NDATA")
     if not dt or dt <= 0.0 or n_samples is None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion._findings import Evidence
+from rockflex.motion._findings import Evidence, NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
 from rockflex.motion._recorded import MEAN_SUBTRACTED, recorded_motion
@@ -113,17 +113,19 @@ def _motion_of_trace(
 def _quantity_of_trace(file: Path, trace: Any, form: str, channel: str) -> str:
     """Return what says that a trace is an acceleration; empty if only the unit given does."""
     if len(channel) == 3 and channel[1] in VELOCITY_CODES:
-        raise InputError(
+        raise NoAccelerationError(
             f"{file}: channel {channel} belongs to a velocity sensor, but an acceleration is expected. Give the "
-            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
+            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}.",
+            found="velocity",
         )
     code = int(trace.stats.get("sac", {}).get("idep", 0))
     quantity = SAC_QUANTITIES.get(code)
     said = f"header field IDEP: {code}, {quantity}"
     if quantity not in (None, "acceleration"):
-        raise InputError(
+        raise NoAccelerationError(
             f"{file}: an acceleration is expected, but found a {quantity} ({said}). Give the file of the acceleration; "
-            "or correct the field, if it is wrong."
+            "or correct the field, if it is wrong.",
+            found=str(quantity),
         )
     if quantity is not None:
         return said

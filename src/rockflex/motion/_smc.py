@@ -11,7 +11,7 @@ from pathlib import Path
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion import _text
-from rockflex.motion._findings import Evidence, quoted_line
+from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line
 from rockflex.motion._fixed_width import fixed_width_numbers
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, found_component
@@ -40,7 +40,7 @@ def parse_smc(file: Path, lines: list[str]) -> list[GroundMotion]:
     """Build the motion from the lines of an SMC file."""
     first = FIRST_LINE.match(lines[0][:80])
     if first is None or not first[1].upper().endswith("ACCELERO"):
-        raise InputError(
+        raise NoAccelerationError(
             f"{file}: an acceleration is expected, but the file begins with {shown(lines[0].strip()[:40])}. Give the "
             "file of the corrected accelerogram."
         )
