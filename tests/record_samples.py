@@ -205,6 +205,108 @@ def geonet(
     return "\n".join([*text, *rows]) + "\n"
 
 
+def csmip(
+    component: str = "90 DEG",
+    samples: Sequence[float] = SAMPLES,
+    *,
+    volume: int = 2,
+    data_line: str = "{n} POINTS OF ACCEL DATA EQUALLY SPACED AT  .005 SEC.  (UNITS: CM/SEC/SEC)",
+    text_unit: str = "IS G",
+    peak: str | None = None,
+    width: int = 10,
+    digits: int = 3,
+    times: Sequence[float] | None = None,
+) -> str:
+    """A channel of a CSMIP file, of V1 or V2; with times, pairs of time and acceleration of an old V1."""
+    n = len(samples)
+    v1 = [
+        "UNCORRECTED ACCELEROGRAM DATA              PROCESSED: 06/16/98, CDMG 23583",
+        "SOMEWHERE EARTHQUAKE",
+        "JUNE 28, 1992 08:05 PDT                 (ORIGIN(USGS): 06/28/92, 15:05:30.5 UTC)",
+        "23583-E0245-92183.06               TRIGGER TIME: 06/28/92, 15:05:37.4 UTC",
+        "STATION NO. 23583   34.405N, 117.311W     SSA-1  S/N 0245",
+        "SOME PLACE - 4TH STREET",
+        f"CHAN  1: {component}",
+        "SOMEWHERE EARTHQUAKE     JUNE 28, 1992 08:05 PDT",
+        "HYPOCENTER(CIT/USGS): 34.201N,116.826W, H=7KM.     MS=6.6(NEIC), MW=6.4(CIT)",
+        "INSTR PERIOD =  .0186 SEC,  DAMPING =  .660,  SENSITIVITY = 1.26  V/G.",
+        f"NO. OF POINTS =  {n}  RECORD LENGTH = {0.005 * (n - 1):.3f} SEC",
+        f"UNITS OF UNCOR ACCEL {text_unit}.                 MAX  =  {peak or '9.9 VOLT'}, AT   9.425 SEC.",
+        "RMS ACCEL OF COMPLETE RECORD =  .008 G.",
+    ]
+    v2 = [
+        f"CORRECTED ACCELEROGRAM   23583-E0245-92183.06       CHAN  1: {component}     FROM",
+        *v1[:5],
+        *(
+            "SOME PLACE - 4TH STREET",
+            f"CHAN  1: {component}",
+            "SOMEWHERE EARTHQUAKE     JUNE 28, 1992 08:05 PDT",
+            v1[8],
+        ),
+        *(v1[9], "RECORD LENGTH = 65.000 SEC.", "                    UNCOR MAX  =  -.275 G, AT  10.947 SEC.", v1[12]),
+        "ACCELEROGRAM BANDPASS FILTERED WITH RAMPS AT  .050- .100 AND 23.00-25.00 CYC/SEC",
+        f"  {n} POINTS OF INSTRUMENT- AND BASELINE-CORRECTED ACCEL, VELOC AND DISPL DATA",
+        "AT EQUALLY-SPACED INTERVALS OF    .005  SEC.",
+        f"PEAK ACCELERATION =  {peak or f'{max(samples, key=abs):.3f}    CM/SEC/SEC'}  AT   10.940   SEC.",
+        *["PEAK   VELOCITY   =   -28.253      CM/SEC    AT   11.100   SEC."] * 7,
+    ]
+
+    def block(values: Sequence[float], n: int, width: int, digits: int) -> list[str]:
+        written = [f"{value:{width}.{digits}f}" for value in values]
+        return ["".join(written[k : k + n]) for k in range(0, len(written), n)]
+
+    head = [*(v2 if volume == 2 else v1), *block([0.0] * 100, 16, 5, 0), *block([0.0] * 50 * volume, 8, 10, 3)]
+    if times is not None:
+        pairs = [value for pair in zip(times, samples, strict=True) for value in pair]
+        return "\n".join([*head, *block(pairs, 10, 7, 3), "/&  ----------  END OF DATA FOR CHANNEL  1", ""])
+    rows = [data_line.format(n=n), *block(samples, 8, width, digits)]
+    if volume == 2:
+        for other in ("VELOC", "DISPL"):
+            rows += [f"{n} POINTS OF {other} DATA EQUALLY SPACED AT  .005 SEC.", *block([1.0] * n, 8, 10, 3)]
+    return "\n".join([*head, *rows, "/&  ----------  END OF DATA FOR CHANNEL  1  ----------", ""])
+
+
+def smc(
+    samples: Sequence[float] = SAMPLES,
+    *,
+    first: str = "2 CORRECTED ACCELEROGRAM",
+    component: str = "360",
+    integers: dict[int, int] | None = None,
+    reals: dict[int, float] | None = None,
+) -> str:
+    """An SMC file; header values are changed by their places, which count from 1."""
+    whole = dict.fromkeys(range(1, 49), -32768)
+    whole |= {2: 1989, 13: 90, 14: 360, 16: 2, 17: len(samples)} | (integers or {})
+    real = dict.fromkeys(range(1, 51), 1.7e38)
+    real |= {2: 200.0, 6: 7.1, 17: 89.0, 30: max(samples), 32: min(samples)} | (reals or {})
+    text = [
+        first,
+        "*",
+        "SAF0A",
+        "     1989  10  18    0004 Loma Prieta, CA",
+        "Moment Mag=      7.1 Ms=      7.1 Ml=      7.0",
+        f"station = San Francisco, F component=    {component}",
+        "epicentral dist =     89.0       pk     =    104.4",
+        "inst type=SMA-1      data source = USGS",
+        *["*"] * 3,
+    ]
+
+    def block(written: Sequence[str], n: int) -> list[str]:
+        return ["".join(written[k : k + n]) for k in range(0, len(written), n)]
+
+    def short(value: float) -> str:  # one digit of the exponent
+        number, power = f"{value:.4E}".split("E")
+        return f"{number}E{int(power):+d}".rjust(10)
+
+    rows = [
+        *block([f"{value:10d}" for value in whole.values()], 8),
+        *block([f"{value:15.7E}" for value in real.values()], 5),
+        *("|", "|A comment"),
+        *block([short(value) for value in samples], 8),
+    ]
+    return "\n".join([*text, *rows, ""])
+
+
 SEARCH_RESULTS = """
  PEER Ground Motion Database, Time Series Search Report -- NGA-West2 -- 2025-12-30
 

@@ -86,12 +86,19 @@ HOME = {
     "anyio": {"web"},
     "tomli_w": {"project", "web"},
     "obspy": {"motion"},
+    "gmprocess": {"motion"},
     "openpyxl": {"motion"},
     "xarray": {"response"},
     "PIL": {"plot"},
     "imageio_ffmpeg": {"plot"},
 }
-NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl", "imageio_ffmpeg"}  # only inside functions, or for the type checker
+NEVER_AT_IMPORT = {
+    "pandas",
+    "obspy",
+    "gmprocess",
+    "openpyxl",
+    "imageio_ffmpeg",
+}  # only inside functions, or for the type checker
 NOT_LOADED = {
     *("scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
     *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),

@@ -5,7 +5,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rockflex as rf
-from record_samples import cosmos, esm, geonet, knet
+from record_samples import cosmos, csmip, esm, geonet, knet, smc
 
 SETTINGS = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 SAMPLES = st.lists(st.floats(-900.0, 900.0).map(lambda value: round(value, 3)), min_size=3, max_size=40)
@@ -48,6 +48,26 @@ def test_geonet(tmp_path, samples, corrected):
     first, second = rf.read_components(file)
     assert first.acceleration.tolist() == [each * 1e-3 for each in samples]
     assert np.array_equal(first.acceleration, second.acceleration)
+
+
+@SETTINGS
+@given(samples=SAMPLES, volume=st.sampled_from([1, 2]))
+def test_csmip(tmp_path, samples, volume):
+    file = tmp_path / "a.v2"
+    written = {"volume": volume, "text_unit": "IS CM/SEC/SEC"}
+    file.write_text(csmip("90 DEG", samples, **written) + csmip("UP", samples, **written))
+    first, second = rf.read_components(file)
+    assert first.acceleration.tolist() == [each * 0.01 for each in samples]
+    assert np.array_equal(first.acceleration, second.acceleration)
+
+
+@SETTINGS
+@given(samples=SAMPLES)
+def test_smc(tmp_path, samples):
+    file = tmp_path / "a.smc"
+    file.write_text(smc(samples))
+    # Five digits are written.
+    assert np.abs(rf.read_motion(file).acceleration - 0.01 * np.array(samples)).max() <= 5e-5 * 9.0
 
 
 @SETTINGS

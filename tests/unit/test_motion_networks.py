@@ -11,7 +11,7 @@ from record_samples import COUNTS, GAL, SAMPLES, cosmos, esm, geonet, knet, load
 
 WRITERS = {"K-NET": knet, "ESM": esm, "COSMOS": cosmos, "GeoNet": geonet}
 FILES = {
-    "K-NET": "MYG0020601182325.NS",
+    "K-NET": "MYG0020601182325.txt",
     "ESM": "IT.NRC.00.HNE.D.20161030.064018.C.ACC.ASC",
     "COSMOS": "CE13921.V2c",
     "GeoNet": "20190305_070859_MADE_20.V2A",
@@ -61,7 +61,7 @@ def test_samples_and_peak(write, form, text, unit, dt):
 
 
 def test_samples_of_knet_are_counts_times_the_scale_without_their_mean(write):
-    motion = rf.read_motion(write("K-NET", knet()))
+    motion = rf.read_motion(write("K-NET", knet(), "MYG0020601182325.NS"))
     assert motion.acceleration == pytest.approx((np.array(COUNTS) - 8000.0) * GAL / 100.0, rel=1e-12, abs=1e-15)
     assert motion.pga == pytest.approx(motion.metadata.stated_pga, abs=5e-6)
     assert (motion.dt, motion.name) == (0.1, "MYG0020601182325-NS")
@@ -89,7 +89,7 @@ def unknown(names):
         # The recording time of K-NET's header is 15 s late.
         ("K-NET", knet(), {
             "event": "2006-01-18 23:25", "year": 2006, "station": "MYG002", "network": "NIED", **scale(5.7, "MJMA"),
-            "location": None, "start_time": "2006-01-18T23:25:31+09:00", "source": "MYG0020601182325.NS",
+            "location": None, "start_time": "2006-01-18T23:25:31+09:00", "source": "MYG0020601182325.txt",
             "source_format": "K-NET", "processing": "mean subtracted",
         }),
         ("ESM", esm(), {
@@ -190,13 +190,21 @@ def test_facts_of_headers(write, form, text, facts):
         ("COSMOS", cosmos(kind="velocity"), "is a COSMOS file without a series of acceleration"),
         ("COSMOS", cosmos(integers={3: 5}), "unit of the acceleration is not known: code 5 in place 3"),
         ("COSMOS", cosmos(integers={3: -999}, units="furlongs"), "acceleration is not known: code None"),
-        ("COSMOS", cosmos(samples=RAW, form=(10, "I8"), integers={3: 50}), r"raw counts, .* \(places 22 and 42\)"),
+        (
+            "COSMOS",
+            cosmos(samples=RAW, form=(10, "I8"), integers={3: 50}),
+            r"raw counts \(line 49: .*\), which need scaling, .* \(places 22 and 42\)",
+        ),
         ("COSMOS", cosmos(reals={62: -999.0}), "no positive time step is stated in place 62 of the real header"),
         ("COSMOS", cosmos(reals={62: 50.0}), "a length of 0.04 s, but 8 samples at steps of 0.05 s last 0.4 s"),
         ("COSMOS", cosmos().replace("Format=(8F10.3)", ""), "line 49: a format of numbers is expected"),
         ("COSMOS", cosmos().replace("   12.125 ", "   12.x25 "), "line 50: .* but found '12.x25'"),
-        ("COSMOS", cosmos().replace("       8 acc", "       9 acc"), "line 49: 9 numbers are announced, but 8"),
-        ("COSMOS", cosmos()[:2500], "numbers are announced, but"),
+        (
+            "COSMOS",
+            cosmos().replace("       8 acc", "       9 acc"),
+            "line 51: 1 accelerations are expected, .* 10 char",
+        ),
+        ("COSMOS", cosmos()[:2500], "truncated: 100 values of the real-header are announced, in lines 26 to 45"),
         ("GeoNet", geonet(integers={34: 0}), "line 20: the numbers of .* columns 4 to 6, but they are 0, 8, 8"),
         ("GeoNet", geonet(integers={36: -1}), "line 20: the numbers of .* but they are 8, 8, -1"),
         ("GeoNet", geonet(reals={26: 0.0}), "line 23: a positive time step in s is expected in column 6, but it is 0"),
@@ -359,12 +367,20 @@ def test_formats_of_numbers_in_cosmos(write, form):
 
 
 @pytest.mark.parametrize(
-    ("code", "factor"), [(2, 9.81), (4, 0.01), (7, 0.0254), (10, 0.01), (11, 9.81e-3), (12, 9.81e-6), (-999, 0.01)]
+    ("code", "units", "factor"),
+    [
+        (2, "g", 9.81),
+        (4, "cm/sec2", 0.01),
+        (7, "in/sec2", 0.0254),
+        (10, "gal", 0.01),
+        (11, "mg", 9.81e-3),
+        (12, "micro g", 9.81e-6),  # which the line need not say in words that are known
+        (-999, "cm/sec2", 0.01),  # only the line of the series states it
+    ],
 )
-def test_units_of_cosmos(write, code, factor):
-    """Where the integer header has none, the line of the series states it: cm/s²."""
+def test_units_of_cosmos(write, code, units, factor):
     samples = [0.0, 0.25, -0.5, 0.125]
-    motion = rf.read_motion(write("COSMOS", cosmos(samples=samples, integers={3: code})))
+    motion = rf.read_motion(write("COSMOS", cosmos(samples=samples, integers={3: code}, units=f"{units}({code:02d})")))
     assert motion.acceleration == pytest.approx(np.array(samples) * factor)
     assert motion.metadata.stated_pga == pytest.approx(0.5 * factor)
 
@@ -376,7 +392,7 @@ def test_raw_counts_of_cosmos(write):
     # microvolts a count over volts a g
     expected = (np.array(RAW) - np.mean(RAW)) * 0.298023e-6 / 0.627 * 9.81
     assert motion.acceleration == pytest.approx(expected, rel=1e-12)
-    assert (motion.metadata.stated_pga, motion.metadata.processing) == (None, "mean subtracted")
+    assert (motion.metadata.stated_pga, motion.metadata.processing) == (None, "uncorrected; mean subtracted")
 
 
 @pytest.mark.parametrize("reals", [{62: -999.0, 34: 0.005}, {63: -999.0}])

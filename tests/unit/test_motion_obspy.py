@@ -68,6 +68,32 @@ def test_refuses(obspy, tmp_path):
         rf.read_motion(tmp_path / "b.sac", units="mg")
 
 
+@pytest.mark.parametrize(("code", "quantity"), [(6, "displacement"), (7, "velocity"), (8, "acceleration"), (5, None)])
+def test_the_header_of_sac_says_the_quantity(obspy, tmp_path, code, quantity):
+    one = trace(obspy, "HNE")
+    one.stats.sac = {"idep": code}
+    one.write(str(tmp_path / "a.sac"), format="SAC")
+    if quantity in ("displacement", "velocity"):
+        with pytest.raises(rf.InputError, match=rf"found a {quantity} \(header field IDEP: {code}, {quantity}\)"):
+            rf.read_motion(tmp_path / "a.sac", units="mm/s2")
+        return
+    found = rf.read_motion(tmp_path / "a.sac", units="mm/s2").metadata.findings
+    assert [str(each) for each in found] == [
+        f"quantity: acceleration ({'header field IDEP: 8, acceleration' if quantity else 'channel HNE'})",
+        "unit: mm/s2 (units=mm/s2)",
+        "time step: 0.005 s (header of SAC)",
+        "component: HNE, horizontal (channel HNE)",
+    ]
+
+
+def test_a_channel_that_contradicts_the_name_of_its_file(obspy, tmp_path):
+    file = write(obspy, tmp_path / "XX.ABC.HNE.sac", "HNZ", form="SAC")
+    with pytest.raises(rf.InputError, match=r"component: vertical \(channel HNZ\), but horizontal \(name of the file"):
+        rf.read_motion(file, units="mm/s2")
+    several = write(obspy, tmp_path / "XX.ABC.HNE.mseed", "HNZ", "HNN")
+    assert [each.metadata.is_vertical for each in rf.read_components(several, units="mm/s2")] == [True, False]
+
+
 def test_pieces_that_continue_each_other_are_one(obspy, tmp_path):
     pieces = obspy.Stream([trace(obspy, "HNE"), trace(obspy, "HNE", start=0.005 * COUNTS.size)])
     pieces.write(str(tmp_path / "a.mseed"), format="MSEED")

@@ -60,7 +60,7 @@ def test_read_suite_reads_a_directory(tmp_path):
 
 
 def test_read_suite_refuses(tmp_path):
-    with pytest.raises(InputError, match=r"no file ends in .at2.*in one of the formats K-NET, ESM, "):
+    with pytest.raises(InputError, match=r"no file ends in .at2.*in one of the formats K-NET, "):
         read_suite(tmp_path)
     with pytest.raises(InputError, match=r"is not a directory. Give a directory or a list of files"):
         read_suite(tmp_path / "none")

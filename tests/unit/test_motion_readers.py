@@ -8,7 +8,7 @@ import warnings
 import pytest
 
 import rockflex as rf
-from record_samples import SAMPLES, cosmos, esm, geonet, knet
+from record_samples import SAMPLES, cosmos, csmip, esm, geonet, knet, smc
 
 SIZE = 400_000  # characters; a quadratic pattern takes many minutes
 PATIENCE = 60.0  # s for all, where some are needed
@@ -31,6 +31,7 @@ SERIES = "\\n0.1\\n0.2\\n0.3\\n"
 KNET = knet().splitlines()[:17]
 COSMOS = cosmos()
 GEONET = geonet()
+CSMIP, SMC = csmip(volume=1), smc()
 HEADER = "NPTS= 3, DT= .01 SEC"
 CRAFTED = {
     "digits": f"'1' * {SIZE} + 'x'",
@@ -80,6 +81,16 @@ CRAFTED = {
     "first line of GeoNet": f"{GEONET!r}.replace('_MADE_', '_20' * {SIZE // 3})",
     "blanks of a component": f"{GEONET!r}.replace('Component ', 'Component' + ' ' * {SIZE})",
     "numbers of GeoNet": f"{GEONET!r}.replace('   0.000', '       1' * {SIZE // 8}, 1)",
+    "channels": f"{COSMOS!r}.replace('Sta Chan  1:', 'Sta ' + 'Chan 1' * {SIZE // 6} + ' ' * {SIZE})",
+    "channel in a comment": f"{COSMOS!r}.replace('| Sensor', '|<SCNL>' + 'A' * {SIZE} + '. Sensor')",
+    "text of CSMIP": f"{CSMIP!r}.replace(' ACCEL DATA', ' ' * {SIZE}).replace('UNITS', 'UNITS' * {SIZE // 5})",
+    "blanks of CSMIP": f"{CSMIP!r}.replace(' POINTS', ' ' * {SIZE}).replace('CHAN', 'CHAN' + ' ' * {SIZE})",
+    "channels of CSMIP": f"{CSMIP!r} * 50 + '/&\\n' * {SIZE // 3}",
+    "numbers of SMC": f"{SMC!r}.replace('1.2125E+1', '1' * {SIZE})",
+    "text of SMC": f"{SMC!r}.replace('component=', 'component' * {SIZE // 9} + ' ' * {SIZE} + '=')",
+    "labels of K-NET": f"'#K-NET CSV\\n' + '#N-S(' * {SIZE // 5} + '\\n#0\\n' + '(' * {SIZE} + ')\\n1,2'",
+    "table of JMA": f"'SITE CODE=' + '=' * {SIZE} + '\\nUNIT=' + '(' * {SIZE} + '\\nSAMPLING RATE=100Hz\\nN\\n1\\n'",
+    "first lines": f"('file:' + ' ' * {SIZE} + '\\n') * 20 + '1\\n2\\n3\\n'",
     "codes": f"{COSMOS!r}.replace('Code:', 'Code:' * {SIZE // 5})",
     "labels of a table": f"'file,units' + ',m' * {SIZE // 2} + '{ROWS}'",
     "numbers with a comma": f"'{HEADER}\\n' + '1' * {SIZE // 2} + ',x' + '1' * {SIZE // 2} + '\\n'",

@@ -32,17 +32,19 @@ VERTICAL = (
     "Kobe UP.csv",
     "RSN953_NORTHR_MUL-UP (1).AT2",
     "RSN9_BORREGO_B-ELC-DWN - Copy (2).AT2",
+    "AKBMR--n.1000.BNZ.--.acc.V2c",
+    "20200101_9999_ap_AAD_Acc_U.asc",
+    "19990101_152309ITDPC_XXX__UPX.DAT",
+    "TCGH130007210339.UD1",
 )
 UNKNOWN = (
     "RSN1059_NORTHR_PTH090.AT2",
-    "RSN1180_CHICHI_CHY002-N.AT2",
     "RSN140_TABAS_FER-L1.AT2",
     "RSN160_IMPVALL.H_059V2090.AT2",
     "RSN161_IMPVALL.H_LF1360.AT2",
     "RSN182_IMPVALL.H_H-VC6000.AT2",
     "RSN187_X_UPL090.AT2",
     "RSN189_X_CUP000.AT2",
-    "RSN190_X_UP1-E.AT2",
     "RSN212_LIVERMOR_A-DVD156.AT2",
     "RSN3512_CHICHI.06_TCU141E.AT2",
     "RSN4886_CHUETSU_65058NS.AT2",
@@ -55,15 +57,31 @@ UNKNOWN = (
     "setup.csv",
     "rev.txt",
     "motion_v1.csv",
-    "ELCENTRO-NS.AT2",
     "uplift-1.csv",
-    "ELC-NS (1).csv",
 )
 
 
 @pytest.mark.parametrize("name", VERTICAL)
 def test_names_of_vertical_components(name):
     assert component_direction(Path(name)) == ("down" if "DWN" in name else "vertical")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(
+            "RSN1180_CHICHI_CHY002-N.AT2",
+            "RSN190_X_UP1-E.AT2",
+            "ELCENTRO-NS.AT2",
+            "ELC-NS (1).csv",
+            "a.EW2",
+            "a__WEX.DAT",
+        ),
+        *("IT.NRC.00.HNE.D.20161030.ACC.ASC", "XX.HNZ.HN1.txt", "20200101_9999_ap_AAD_Acc_E.asc"),
+    ],
+)
+def test_names_of_horizontal_components(name):
+    assert component_direction(Path(name)) == "horizontal"
 
 
 @pytest.mark.parametrize("name", UNKNOWN)
@@ -86,7 +104,10 @@ def test_components_that_a_header_calls_horizontal(component):
     assert component_direction(Path("RSN1_X_ABC.AT2"), component) == "horizontal"
     # A station's name may end in these letters; what stands apart in the file's name counts all the same.
     assert component_direction(Path("RSN1_X_ABCUP.AT2"), component) == "horizontal"
-    assert component_direction(Path("RSN1_X_ABC-UP.AT2"), component) == "vertical"
+    with pytest.raises(
+        rf.InputError, match=r"about the component: horizontal \(header .*\), but vertical \(name of the"
+    ):
+        component_direction(Path("RSN1_X_ABC-UP.AT2"), component)
 
 
 @pytest.mark.parametrize(("component", "direction"), [("UP", "vertical"), ("360", "horizontal"), ("Upland", None)])

@@ -13,8 +13,11 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.motion import _text
+from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line, settled
+from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, component_record_names
+from rockflex.motion._record_info import FoundComponent, RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, UNCORRECTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit, acceleration_unit
 
 # Table 2 of the format: the units of accelerations.
@@ -27,34 +30,45 @@ UNIT_CODES = {
     12: AccelerationUnit("mg", 1e-3),
 }
 COUNTS_CODE = 50
+MAX_AZIMUTH = 360
+HEADERS = {"integer-header": "integers", "real-header": "reals"}
 # Table 9: directions of a sensor that are no azimuth.
-DIRECTIONS: dict[int, tuple[str, Direction | None]] = {
-    400: ("UP", "vertical"),
-    401: ("DOWN", "down"),
-    402: ("VERT", "vertical"),
-    500: ("RADL", "horizontal"),
-    501: ("TRAN", "horizontal"),
-    600: ("LONG", "horizontal"),
-    601: ("TANG", "horizontal"),
-    700: ("H1", "horizontal"),
-    701: ("H2", "horizontal"),
+DIRECTIONS = {
+    400: "UP",
+    401: "DOWN",
+    402: "VERT",
+    500: "RADL",
+    501: "TRAN",
+    600: "LONG",
+    601: "TANG",
+    700: "H1",
+    701: "H2",
 }
+STAGES = (0, 1)  # of processing, in place 1 of the integer header: raw and uncorrected
 MICROVOLT = 1e-6
 MAX_VS30_KM_S = 10.0  # V_s30 is in km/s below it, and in m/s above it
 FIRST_LINE = re.compile(r"\(Format\s*+v[\d.]++\s*+with\s*+(\d{1,3})\s*+text lines\)", re.IGNORECASE)
-BLOCK_LINE = re.compile(r"\s*+(\d{1,9})\s++(\w++(?:-header)?+)", re.IGNORECASE)
+# The series of raw accelerations is called "raw accel.".
+BLOCK_LINE = re.compile(r"\s*+(\d{1,9})\s++((?:raw\s++)?+[\w-]++)", re.IGNORECASE)
+CHANNEL_LINE = re.compile(
+    r"Chan?+\s*+:?+\s*+[\d?]*+\s*+:\s*+(?:(\d{1,3})(?=\s*+deg)|(Up|Down|Vert)|(Other))", re.IGNORECASE
+)
+SCNL = re.compile(r"\|?+\s*+<SCNL>\s*+[^.\s]++\.(\w{3})\b", re.IGNORECASE)  # the channel, between dots
 NUMBER_FORMAT = re.compile(r"Format\s*+=\s*+\(\s*+(\d{0,3}+)[IFEGD](\d{1,3}+)", re.IGNORECASE)
 
 
 @dataclass
 class CosmosChannel:
-    """The headers of a channel, its acceleration, and the line that announces it."""
+    """The headers of a channel, its acceleration, the line that announces it, and other series that there are."""
 
+    line: int  # the first one of the text, from 1
     text: list[str]
     integers: Array = field(default_factory=lambda: np.zeros(0))
     reals: Array = field(default_factory=lambda: np.zeros(0))
     values: Array | None = None
-    announced: str = ""
+    announced: Evidence[str] = field(default_factory=lambda: Evidence("", ""))
+    comments: list[Evidence[str]] = field(default_factory=list[Evidence[str]])
+    others: list[str] = field(default_factory=list[str])
 
     def real(self, place: int, header: Array | None = None) -> float | None:
         """Return a value of the real header, or of another one; None if it is unknown."""
@@ -72,34 +86,40 @@ class CosmosChannel:
         return self.integer(3) == COUNTS_CODE
 
 
-def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
+def channel_unit(file: Path, channel: CosmosChannel) -> Evidence[AccelerationUnit]:
     """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
         step, sensitivity = channel.real(22), channel.real(42)  # µV a count, V a g
         if not step or not sensitivity or step < 0.0:
             raise InputError(
-                f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
-                "and 42). Download the corrected record (V2)."
+                f"{file} holds raw counts ({channel.announced.said}), which need scaling, and its real header does not "
+                "state the value of one count (places 22 and 42). Download the corrected record (V2)."
             )
         gain = _text.non_negative_or_none(channel.real(47)) or 1.0
-        return AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
+        said = f"raw counts; real header, places 22, 42 and 47: {step:g} µV, {sensitivity:g} V/g, gain {gain:g}"
+        return Evidence(AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain), said)
+    stated: list[Evidence[AccelerationUnit]] = []
     if code in UNIT_CODES:
-        return UNIT_CODES[code]
-    written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
-    unit = acceleration_unit(written[1]) if written and code is None else None
-    if unit is None:
+        stated.append(Evidence(UNIT_CODES[code], f"integer header, place 3: {code}"))
+    written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced.value)
+    unit = acceleration_unit(written[1]) if written else None
+    if unit is not None and (stated or code is None):
+        stated.append(Evidence(unit, channel.announced.said))
+    found = settled(file, "unit", stated, None, "Download the record again.", lambda one, other: one.same(other))
+    if found is None:
         raise InputError(
             f"{file}: the unit of the acceleration is not known: code {code} in place 3 of the integer header, "
-            f"{channel.announced.strip()[:80]!r}. Download the corrected record (V2)."
+            f"{channel.announced.said}. Download the corrected record (V2)."
         )
-    return unit
+    return found
 
 
-def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> float:
+def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> Evidence[float]:
     """Return the time step in s."""
     milliseconds, seconds = channel.real(62), channel.real(34)
     dt = seconds if not milliseconds else 1e-3 * milliseconds
+    said = f"real header, place 62: {milliseconds:g} ms" if milliseconds else "real header, place 34"
     if dt is None or not dt > 0.0:
         raise InputError(
             f"{file}: no positive time step is stated in place 62 of the real header. Download the record again."
@@ -110,18 +130,19 @@ def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> flo
             f"{file}: the header states a length of {length:g} s, but {n_samples} samples at steps of {dt:g} s last "
             f"{n_samples * dt:g} s. Download the record again."
         )
-    return float(f"{dt:.12g}")
+    return Evidence(float(f"{dt:.12g}"), said)
 
 
-def channel_record_info(file: Path, channel: CosmosChannel) -> RecordInfo:
+def channel_record_info(channel: CosmosChannel, unit: AccelerationUnit) -> RecordInfo:
     """Return the metadata in the headers."""
-    component, direction, azimuth = _channel_direction(channel)
     lines = [*channel.text, *[""] * 13]
     code = re.search(r"Code:\s*+(\w++)-(\S++)", lines[4])
     event, year = _event_in_cosmos_header(lines[1])
     magnitude, scale = _channel_magnitude(channel)
     peak = channel.real(64)
     vs30 = _text.non_negative_or_none(channel.real(4))
+    uncorrected = channel.counts or channel.integer(1) in STAGES
+    done = [UNCORRECTED] * uncorrected + [MEAN_SUBTRACTED] * channel.counts
     return RecordInfo(
         event=event,
         year=year,
@@ -129,33 +150,32 @@ def channel_record_info(file: Path, channel: CosmosChannel) -> RecordInfo:
         magnitude_type=scale,
         epicentral_km=_text.non_negative_or_none(channel.real(17)),
         vs30=None if not vs30 else 1e3 * vs30 if vs30 < MAX_VS30_KM_S else vs30,
-        component=component,
-        direction=direction,
-        azimuth=azimuth,
         station=code and code[2],
         network=code and code[1],
         location=lines[8].partition("Location:")[2].strip() or None,
         start_time=_channel_start_time(channel, lines[7]),
-        source=file.name,
         source_format="COSMOS",
         # The peak of raw counts contains their offset.
-        stated_pga=None if not peak or channel.counts else abs(peak) * channel_unit(file, channel).si,
-        processing="mean subtracted" if channel.counts else None,
+        stated_pga=None if not peak or channel.counts else abs(peak) * unit.si,
+        processing="; ".join(done) or None,
     )
 
 
-def _channel_direction(channel: CosmosChannel) -> tuple[str | None, Direction | None, float | None]:
-    """Return the name, the direction and the azimuth of the component."""
-    code = channel.integer(54)
-    if code is None:
-        stated = re.search(r"Chan\s*+\d*+\s*+:\s*+(\d{1,3}(?=\s*+deg)|Up|Down)", " ".join(channel.text[8:9]), re.I)
-        codes = {"up": 400, "down": 401}
-        code = None if stated is None else codes.get(stated[1].lower()) or int(stated[1])
-    if code is None:
-        return None, None, None
-    if 0 <= code <= 360:
-        return f"{code:03d}", "horizontal", component_azimuth(str(code))
-    return (*DIRECTIONS.get(code, (str(code), None)), None)
+def _channel_component(file: Path, channel: CosmosChannel, *, several: bool) -> FoundComponent:
+    """Return the component by its code, its line of the text and its channel in a comment.
+
+    Where the line says "Other", a code of zero is no azimuth.
+    """
+    code, line = channel.integer(54), " ".join(channel.text[8:9])
+    written = CHANNEL_LINE.search(line)
+    stated: list[Evidence[str]] = []
+    if code is not None and not (written and written[3]):
+        name = f"{code:03d}" if 0 <= code <= MAX_AZIMUTH else DIRECTIONS.get(code, str(code))
+        stated.append(Evidence(name, f"integer header, place 54: {code}"))
+    if written and (written[2] or (written[1] and int(written[1]) <= MAX_AZIMUTH)):
+        stated.append(Evidence(written[2] or f"{int(written[1]):03d}", quoted_line(channel.line + 8, line)))
+    stated += channel.comments
+    return found_component(file, *stated, several=several)
 
 
 def _event_in_cosmos_header(line: str) -> tuple[str | None, int | None]:
@@ -192,21 +212,25 @@ def is_cosmos(lines: list[str]) -> bool:
 
 def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
     """Build the motions of all channels of acceleration; from raw counts the mean is subtracted."""
-    channels = [each for each in _read_cosmos_channels(file, lines) if each.values is not None]
+    found = _read_cosmos_channels(file, lines)
+    channels = [each for each in found if each.values is not None]
     if not channels:
-        raise InputError(
-            f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration."
+        others = [other for each in found for other in each.others]
+        raise NoAccelerationError(
+            f"{file} is a COSMOS file without a series of acceleration: it holds {'; '.join(others) or 'none'}. Give "
+            "the file of the acceleration."
         )
-    infos = [channel_record_info(file, each) for each in channels]
-    names = component_record_names(file.stem, [info.component or "channel" for info in infos])
+    components = [_channel_component(file, each, several=len(channels) > 1) for each in channels]
+    names = component_record_names(file.stem, [each.name or "channel" for each in components])
     motions: list[GroundMotion] = []
-    for channel, info, name in zip(channels, infos, names, strict=True):
+    for channel, component, name in zip(channels, components, names, strict=True):
         values = np.zeros(0) if channel.values is None else channel.values
-        if info.processing is not None and values.size:
+        if channel.counts and values.size:
             values = values - values.mean()
-        unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
-        remedy = "Check the units in the integer header."
-        motions.append(_text.motion_from_samples(file, values, unit, step, info, remedy, name))
+        unit, dt = channel_unit(file, channel), channel_time_step(file, channel, values.size)
+        info, remedy = channel_record_info(channel, unit.value), "Check the units in the integer header."
+        said = channel.announced.said
+        motions.append(recorded_motion(file, values, said, unit, dt, component, info, remedy, name))
     return motions
 
 
@@ -217,11 +241,15 @@ def _read_cosmos_channels(file: Path, lines: list[str]) -> list[CosmosChannel]:
         first = FIRST_LINE.search(lines[i][:500])
         block = BLOCK_LINE.match(lines[i])
         if first:
-            found.append(CosmosChannel(lines[i : i + int(first[1])]))
+            found.append(CosmosChannel(i + 1, lines[i : i + int(first[1])]))
             i += max(1, int(first[1]))
         elif block is None or not found:
             i += 1  # the end of the data of a channel, or a blank line
         elif block[2].lower() == "comment":
+            rows = enumerate(lines[i + 1 : i + 1 + int(block[1])], i + 2)
+            found[-1].comments += [
+                Evidence(code[1], quoted_line(k, row)) for k, row in rows if (code := SCNL.match(row.lstrip()))
+            ]
             i += 1 + int(block[1])
         else:
             i = _read_cosmos_block(file, lines, i, block, found[-1])
@@ -236,27 +264,14 @@ def _read_cosmos_block(file: Path, lines: list[str], i: int, block: re.Match[str
             f'{file}, line {i + 1}: a format of numbers is expected, such as "Format=(8F10.3)". Download the record '
             "again."
         )
-    count, columns = int(block[1]), int(form[1] or 1)
-    end = i + 1 + -(-count // max(columns, 1))
-    name = {"integer-header": "integers", "real-header": "reals", "acceleration": "values"}.get(block[2].lower())
-    if name is not None:  # velocities and displacements are passed over
-        setattr(channel, name, _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2])))
-    if name == "values":
-        channel.announced = lines[i]
-    return end
-
-
-def _fixed_width_numbers(file: Path, lines: list[str], begin: int, end: int, count: int, width: int) -> Array:
-    """Return numbers in fields of equal width."""
-    found: list[float] = []
-    for i in range(begin, min(end, len(lines))):
-        line = lines[i].rstrip()
-        if line.startswith("End-of-data"):
-            break
-        found += [_text.parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
-    if len(found) != count:
-        raise InputError(
-            f"{file}, line {begin}: {count} numbers are announced, but {len(found)} follow. The file is truncated or "
-            "was changed: download the record again."
-        )
-    return np.array(found)
+    count, columns, width = int(block[1]), int(form[1] or 1), int(form[2])
+    what = " ".join(block[2].lower().split())
+    if what in HEADERS:
+        values = fixed_width_numbers(file, lines, i + 1, count, columns, width, f"values of the {what}")
+        setattr(channel, HEADERS[what], values)
+    elif re.match(r"(?:raw )?accel", what):
+        channel.announced = Evidence(lines[i], quoted_line(i + 1, lines[i]))
+        channel.values = fixed_width_numbers(file, lines, i + 1, count, columns, width, "accelerations")
+    else:  # velocities and displacements are passed over
+        channel.others.append(quoted_line(i + 1, lines[i]))
+    return i + 1 + lines_of(count, columns)

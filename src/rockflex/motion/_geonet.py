@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
 
-import numpy as np
-
+from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex.motion._findings import Evidence, quoted_line
+from rockflex.motion._fixed_width import check_lines_follow, fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
-from rockflex.motion._text import motion_from_samples, non_negative_or_none, parse_decimal
+from rockflex.motion._record_info import FoundComponent, RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import UNCORRECTED, recorded_motion
+from rockflex.motion._text import non_negative_or_none
 from rockflex.motion._units import AccelerationUnit
 
 TEXT_LINES, N_INTEGERS, N_REALS = 16, 40, 60
@@ -24,7 +26,10 @@ COLUMNS, WIDTH = 10, 8
 UNIT = AccelerationUnit("mm/s2")
 FIRST_LINE = re.compile(r"\s*+(un)?+corrected accelerogram\b(?:.*_(\d\d)\b)?", re.IGNORECASE)
 SITE_LINE = re.compile(r"\s*+Site\s++(\S++)", re.IGNORECASE)
-COMPONENT_LINE = re.compile(r"\s*+Component\s++(\S.*)", re.IGNORECASE)
+COMPONENT_LINE = re.compile(
+    r"\s*+Component\s++(\S(?:(?!\s++\w++\s++Accelerometer Axis).)*+)(?:\s++(\w++)\s++Accelerometer Axis)?+",
+    re.IGNORECASE,
+)
 MAGNITUDES = {17: "Mw", 15: "ML", 16: "Ms", 18: "mb"}  # places among the real numbers, the best scale first
 
 
@@ -34,10 +39,10 @@ class Component:
 
     text: list[str]
     integers: list[int]
-    reals: list[float]
-    values: list[float]
-    dt: float  # s
-    name: str
+    reals: Array
+    values: Array
+    dt: Evidence[float]  # s
+    found: FoundComponent
     uncorrected: bool
 
     def integer(self, place: int) -> int:
@@ -46,7 +51,7 @@ class Component:
 
     def real(self, place: int) -> float:
         """Return a value of the real numbers."""
-        return self.reals[place - 1]
+        return float(self.reals[place - 1])
 
 
 def is_geonet(lines: list[str]) -> bool:
@@ -67,10 +72,11 @@ def parse_geonet(file: Path, lines: list[str]) -> list[GroundMotion]:
             found.append(component)
         else:
             i += 1
-    names = component_record_names(file.stem, [each.name for each in found])
-    remedy = "The format states mm/s²: download the record again."
+    names = component_record_names(file.stem, [each.found.name or "" for each in found])
+    said, remedy = "format GeoNet", "The format states mm/s²: download the record again."
+    unit = Evidence(UNIT, said)
     return [
-        motion_from_samples(file, np.array(each.values), UNIT, each.dt, _info(file, each), remedy, name)
+        recorded_motion(file, each.values, said, unit, each.dt, each.found, _info(each), remedy, name)
         for each, name in zip(found, names, strict=True)
     ]
 
@@ -95,9 +101,9 @@ def _component(file: Path, lines: list[str], begin: int) -> tuple[Component, int
             f"found {' '.join(text[12:13]).strip()[:40]!r}. Download the record again."
         )
     i = begin + TEXT_LINES
-    integers = _numbers(file, lines, i, N_INTEGERS, "integers of the header")
+    integers = fixed_width_numbers(file, lines, i, N_INTEGERS, COLUMNS, WIDTH, "integers of the header")
     i += N_INTEGERS // COLUMNS
-    reals = _numbers(file, lines, i, N_REALS, "real numbers of the header")
+    reals = fixed_width_numbers(file, lines, i, N_REALS, COLUMNS, WIDTH, "real numbers of the header")
     i += N_REALS // COLUMNS
     counts = [int(value) for value in integers[33:36]]
     if counts[0] < 1 or min(counts) < 0:
@@ -110,48 +116,21 @@ def _component(file: Path, lines: list[str], begin: int) -> tuple[Component, int
             f"{file}, line {begin + 23}: a positive time step in s is expected in column 6, but it is {reals[25]:g}. "
             "Download the record again."
         )
-    values = _numbers(file, lines, i, counts[0], "accelerations")
-    i += _n_lines(counts[0])
+    values = fixed_width_numbers(file, lines, i, counts[0], COLUMNS, WIDTH, "accelerations")
+    i += lines_of(counts[0], COLUMNS)
     for count, what in zip(counts[1:], ("velocities", "displacements"), strict=True):
-        _check_length(file, lines, i, count, what)
-        i += _n_lines(count)
+        check_lines_follow(file, lines, i, count, COLUMNS, what)
+        i += lines_of(count, COLUMNS)
     whole = [int(value) for value in integers]
-    name = " ".join(named[1].split())
-    return Component(text, whole, reals, values, reals[25], name, first[1] is not None), i
+    said = quoted_line(begin + 13, text[12])
+    words = [Evidence(" ".join((word or "").split()), said) for word in named.groups()]
+    # A file holds all directions, so its name states none.
+    component = found_component(file, *words, several=True)
+    dt = Evidence(float(reals[25]), f"line {begin + 23}, column 6")
+    return Component(text, whole, reals, values, dt, component, first[1] is not None), i
 
 
-def _n_lines(count: int) -> int:
-    return -(-count // COLUMNS)
-
-
-def _check_length(file: Path, lines: list[str], begin: int, count: int, what: str) -> None:
-    """Raise an InputError if the lines end before `count` numbers."""
-    end = begin + _n_lines(count)
-    if end > len(lines) or (end > begin and not lines[end - 1].strip()):
-        raise InputError(
-            f"{file} is truncated: {count} {what} are announced, in lines {begin + 1} to {end}, but there are only "
-            f"{len(lines)} lines. Download the record again."
-        )
-
-
-def _numbers(file: Path, lines: list[str], begin: int, count: int, what: str) -> list[float]:
-    """Return numbers in fields of equal width, which may leave no blank between them."""
-    _check_length(file, lines, begin, count, what)
-    found: list[float] = []
-    for i in range(begin, begin + _n_lines(count)):
-        line = lines[i].rstrip()
-        row = [parse_decimal(line[k : k + WIDTH].strip(), file, i + 1) for k in range(0, len(line), WIDTH)]
-        expected = min(COLUMNS, count - len(found))
-        if len(row) != expected:
-            raise InputError(
-                f"{file}, line {i + 1}: {expected} {what} are expected, in columns of {WIDTH} characters, but found "
-                f"{len(row)}. The file was changed: download the record again."
-            )
-        found += row
-    return found
-
-
-def _info(file: Path, component: Component) -> RecordInfo:
+def _info(component: Component) -> RecordInfo:
     origin = _time(component, 1, 2, 3, 4, 5)
     site = SITE_LINE.match(component.text[1][:80])
     first = _first(component.text[0])
@@ -164,17 +143,13 @@ def _info(file: Path, component: Component) -> RecordInfo:
         magnitude=None if magnitude is None else component.real(magnitude),
         magnitude_type=None if magnitude is None else MAGNITUDES[magnitude],
         epicentral_km=None if origin is None else non_negative_or_none(float(component.integer(30))),
-        component=component.name,
-        # A file holds all directions, so its name states none.
-        direction=component_direction(Path(), component.name),
-        azimuth=component_azimuth(component.name),
         station=None if site is None else site[1],
         network="NZ",
         location=None if first is None else first[2],
         start_time=_start_time(component),
-        source=file.name,
         source_format="GeoNet",
         stated_pga=abs(peak) * UNIT.si or None,
+        processing=UNCORRECTED if component.uncorrected else None,
     )
 
 

@@ -5,6 +5,8 @@ Format: https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
 
 import math
 import re
+from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime, timedelta
 from pathlib import Path
 
@@ -12,8 +14,10 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion import _text
+from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import AZIMUTHS, Direction, RecordInfo
+from rockflex.motion._record_info import RecordInfo, found_component, stem_with_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit
 
 HEADER_LINES = 17  # the last one is "Memo."
@@ -21,7 +25,6 @@ TRIGGER_DELAY = timedelta(seconds=15)  # of the trigger, in the recording time o
 JAPAN_OFFSET = "+09:00"
 EARTH_RADIUS_KM = 6371.0  # km, mean radius
 SCALE_FACTOR = re.compile(r"([\d.]+)\s*\(\s*gal\s*\)\s*/\s*([\d.]+)", re.IGNORECASE)
-COMPONENT_SUFFIX = re.compile(r"\.(?:NS|EW|UD)[12]?", re.IGNORECASE)
 # Channels of KiK-net: three in the borehole, three at the surface.
 CHANNELS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
 
@@ -56,10 +59,19 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     if not counts.size or abs(counts.size - duration * rate) > rate:
         raise _text.wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
     unit = AccelerationUnit("cm/s2", float(scale[1]) / float(scale[2]))
-    info = _knet_record_info(file, header)
-    remedy = "Check the scale factor in line 14."
-    name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem
-    return [_text.motion_from_samples(file, counts - counts.mean(), unit, 1.0 / rate, info, remedy, name)]
+    direction = header["Dir."].strip().upper()
+    said = {line[:18].strip(): quoted_line(i, line) for i, line in enumerate(lines[:HEADER_LINES], 1)}
+    component = found_component(file, Evidence(CHANNELS.get(direction, direction), said["Dir."]))
+    location = None if direction not in CHANNELS else "borehole" if direction in "123" else "surface"
+    info = replace(
+        knet_record_info(header),
+        location=location,
+        source_format="KiK-net" if location else "K-NET",
+        processing=MEAN_SUBTRACTED,
+    )
+    stated = Evidence(unit, said["Scale Factor"]), Evidence(1.0 / rate, said["Sampling Freq(Hz)"])
+    remedy, name = "Check the scale factor in line 14.", stem_with_component(file)
+    return [recorded_motion(file, counts - counts.mean(), "format K-NET", *stated, component, info, remedy, name)]
 
 
 def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:
@@ -78,15 +90,10 @@ def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:
     return found
 
 
-def _knet_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
-    direction = header["Dir."].strip().upper()
-    component = CHANNELS.get(direction, direction)
-    way: Direction | None = {"U-D": "vertical", "N-S": "horizontal", "E-W": "horizontal"}.get(component)  # pyright: ignore[reportAssignmentType]
-    location = None
-    if direction in CHANNELS:
-        location = "borehole" if direction in "123" else "surface"
-    origin = _knet_start_time(header.get("Origin Time", ""))
-    started = _knet_start_time(header["Record Time"])
+def knet_record_info(header: Mapping[str, str]) -> RecordInfo:
+    """Return what a header says of earthquake and station, by the names in the ASCII files of K-NET."""
+    origin = _knet_time(header.get("Origin Time", ""))
+    started = _knet_time(header.get("Record Time", ""))
     peak = _text.parse_optional_decimal(header.get("Max Acc. (gal)", ""))
     return RecordInfo(
         event=None if origin is None else f"{origin:%Y-%m-%d %H:%M}",
@@ -94,28 +101,21 @@ def _knet_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
         magnitude=_text.non_negative_or_none(_text.parse_optional_decimal(header.get("Mag.", ""))),
         magnitude_type="MJMA",
         epicentral_km=_epicentral_distance(header),
-        component=component,
-        direction=way,
-        azimuth=AZIMUTHS.get(component),
-        station=header["Station Code"] or None,
+        station=header.get("Station Code") or None,
         network="NIED",
-        location=location,
         start_time=None if started is None else f"{started - TRIGGER_DELAY:%Y-%m-%dT%H:%M:%S}{JAPAN_OFFSET}",
-        source=file.name,
-        source_format="KiK-net" if location else "K-NET",
         stated_pga=None if peak is None else 0.01 * abs(peak),
-        processing="mean subtracted",
     )
 
 
-def _knet_start_time(text: str) -> datetime | None:
+def _knet_time(text: str) -> datetime | None:
     try:
         return datetime.strptime(text, "%Y/%m/%d %H:%M:%S")
     except ValueError:
         return None
 
 
-def _epicentral_distance(header: dict[str, str]) -> float | None:
+def _epicentral_distance(header: Mapping[str, str]) -> float | None:
     """Return the distance along the surface of a sphere, in km, to a metre."""
     names = ("Lat.", "Lon.", "Station Lat.", "Station Lon.")
     degrees = [_text.parse_optional_decimal(header.get(name, "")) for name in names]

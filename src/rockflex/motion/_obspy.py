@@ -2,6 +2,7 @@
 
 import io
 import warnings
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex.motion._findings import Evidence, NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
-from rockflex.motion._text import motion_from_samples
+from rockflex.motion._record_info import RecordInfo, component_record_names, found_component
+from rockflex.motion._recorded import MEAN_SUBTRACTED, recorded_motion
 from rockflex.motion._units import AccelerationUnit
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
@@ -19,6 +21,7 @@ UNSAFE_FORMATS = ("PICKLE",)  # reading it would run code that the file contains
 # Formats that state the acceleration of one count, in m/s².
 CALIBRATED = ("KINEMETRICS_EVT", "KNET")
 VELOCITY_CODES = "HMP"  # the second letter of a channel of a velocity sensor
+SAC_QUANTITIES = {6: "displacement", 7: "velocity", 8: "acceleration"}  # header field IDEP: IDISP, IVEL, IACC
 
 
 class ObsPyError(InputError):
@@ -68,46 +71,71 @@ def parse_obspy(file: Path, content: bytes, form: str, units: AccelerationUnit |
         raise InputError(f"{file} holds no samples, according to ObsPy ({form}). Download the record again.")
     channels = [str(trace.stats.channel).strip() or "channel" for trace in traces]
     names = component_record_names(file.stem, channels)
-    return [_motion_of_trace(file, trace, form, units, name) for trace, name in zip(traces, names, strict=True)]
+    several = len(traces) > 1
+    return [
+        _motion_of_trace(file, trace, form, units, name, several=several)
+        for trace, name in zip(traces, names, strict=True)
+    ]
 
 
-def _motion_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None, name: str) -> GroundMotion:
+def _motion_of_trace(
+    file: Path, trace: Any, form: str, units: AccelerationUnit | None, name: str, *, several: bool
+) -> GroundMotion:
     channel = str(trace.stats.channel).strip().upper()
-    if len(channel) == 3 and channel[1] in VELOCITY_CODES:
-        raise InputError(
-            f"{file}: channel {channel} belongs to a velocity sensor, but an acceleration is expected. Give the "
-            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
-        )
+    quantity = _quantity_of_trace(file, trace, form, channel)
     if np.ma.isMaskedArray(trace.data):
         raise InputError(
             f"{file}: channel {channel} has a gap, but a record without gaps is expected. Cut it at the gap with ObsPy."
         )
     unit = _unit_of_trace(file, trace, form, units)
+    # The numbers of a recorder's channels say nothing about directions.
+    component = found_component(
+        file, Evidence("" if channel.isdigit() else channel, f"channel {channel}"), several=several
+    )
+    dt = Evidence(float(f"{float(trace.stats.delta):.12g}"), f"header of {form}")
     info = RecordInfo(
-        component=channel or None,
-        # The numbers of a recorder's channels say nothing about directions.
-        direction=component_direction(file, "" if channel.isdigit() else channel),
-        azimuth=component_azimuth(channel) if len(channel) == 3 else None,
         station=str(trace.stats.station).strip() or None,
         network=str(trace.stats.network).strip() or None,
         location=str(trace.stats.location).strip() or None,
         start_time=f"{trace.stats.starttime.datetime.isoformat()}+00:00",
         year=trace.stats.starttime.year,
-        source=file.name,
         source_format=form,
-        processing="mean subtracted" if form in CALIBRATED else None,
+        processing=MEAN_SUBTRACTED if form in CALIBRATED else None,
     )
     values = np.asarray(trace.data, dtype=np.float64)
     if form in CALIBRATED:
         values = values - values.mean()
-    dt = float(f"{float(trace.stats.delta):.12g}")
-    return motion_from_samples(file, values, unit, dt, info, "Check the value of one count.", name)
+    component = replace(component, name=channel or None, azimuth=component.azimuth if len(channel) == 3 else None)
+    remedy = "Check the value of one count."
+    return recorded_motion(file, values, quantity or unit.said, unit, dt, component, info, remedy, name)
 
 
-def _unit_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None) -> AccelerationUnit:
+def _quantity_of_trace(file: Path, trace: Any, form: str, channel: str) -> str:
+    """Return what says that a trace is an acceleration; empty if only the unit given does."""
+    if len(channel) == 3 and channel[1] in VELOCITY_CODES:
+        raise NoAccelerationError(
+            f"{file}: channel {channel} belongs to a velocity sensor, but an acceleration is expected. Give the "
+            f"channel of the accelerometer, such as {channel[0]}N{channel[2]}.",
+            found="velocity",
+        )
+    code = int(trace.stats.get("sac", {}).get("idep", 0))
+    quantity = SAC_QUANTITIES.get(code)
+    said = f"header field IDEP: {code}, {quantity}"
+    if quantity not in (None, "acceleration"):
+        raise NoAccelerationError(
+            f"{file}: an acceleration is expected, but found a {quantity} ({said}). Give the file of the acceleration; "
+            "or correct the field, if it is wrong.",
+            found=str(quantity),
+        )
+    if quantity is not None:
+        return said
+    return f"format {form}" if form in CALIBRATED else f"channel {channel}" if channel[1:2] == "N" else ""
+
+
+def _unit_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None) -> Evidence[AccelerationUnit]:
     if form in CALIBRATED:
         if units is None:
-            return AccelerationUnit("m/s2", float(trace.stats.calib))
+            return Evidence(AccelerationUnit("m/s2", float(trace.stats.calib)), f"calibration in the header of {form}")
         raise InputError(
             f"{file} states its own calibration ({form}), but units={str(units)!r} was given. Leave units out.",
             field="units",
@@ -118,4 +146,4 @@ def _unit_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | 
             'is: read_motion(path, units="2.4e-4 cm/s2"), or units="m/s2" if the instrument was corrected.',
             field="units",
         )
-    return units
+    return Evidence(units, f"units={units}")

@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +19,19 @@ from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import at2_header_end, parse_at2
 from rockflex.motion._columns import parse_columns
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
+from rockflex.motion._csmip import is_csmip, parse_csmip
 from rockflex.motion._declared import Declared, Layout, declared
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._excel import is_excel_workbook, parse_excel
 from rockflex.motion._geonet import is_geonet, parse_geonet
+from rockflex.motion._gmprocess import NETWORKS, parse_network
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
+from rockflex.motion._japan_csv import is_jma_csv, is_knet_csv, parse_jma_csv, parse_knet_csv
 from rockflex.motion._knet import is_knet, parse_knet
 from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._recorded import MEAN_SUBTRACTED
 from rockflex.motion._sequence import find_sequence, motion_of_sequence
+from rockflex.motion._smc import is_smc, parse_smc
 
 
 @dataclass(frozen=True)
@@ -49,7 +55,7 @@ class RecordFormat:
     --------
     >>> from rockflex.motion import FORMATS
     >>> list(FORMATS)
-    ['K-NET', 'ESM', 'COSMOS', 'GeoNet']
+    ['K-NET', 'K-NET CSV', 'JMA', 'ESM', 'COSMOS', 'GeoNet', 'CSMIP', 'SMC']
     """
 
     name: str
@@ -60,9 +66,13 @@ class RecordFormat:
 FORMATS = Catalogue[RecordFormat](
     (
         RecordFormat("K-NET", is_knet, parse_knet),
+        RecordFormat("K-NET CSV", is_knet_csv, parse_knet_csv),
+        RecordFormat("JMA", is_jma_csv, parse_jma_csv),
         RecordFormat("ESM", is_esm, parse_esm),
         RecordFormat("COSMOS", is_cosmos, parse_cosmos),
         RecordFormat("GeoNet", is_geonet, parse_geonet),
+        RecordFormat("CSMIP", is_csmip, parse_csmip),
+        RecordFormat("SMC", is_smc, parse_smc),
     ),
     "readers",
 )
@@ -237,8 +247,17 @@ def components_in_file(file: Path, given: Declared, *, use_obspy: bool = True) -
 
 
 def is_of_a_network(lines: list[str]) -> bool:
-    """Return whether lines of text begin as a file in one of `FORMATS` does."""
-    return any(each.known(lines) for each in FORMATS.values())
+    """Return whether lines of text begin as a file in one of `FORMATS` does, or in one of another network."""
+    return any(each.known(lines) for each in _text_formats())
+
+
+def _text_formats(*, use_gmprocess: bool = True) -> list[RecordFormat]:
+    """Return the formats that are known by their first lines; those that gmprocess reads come last."""
+    others = [
+        RecordFormat(each.name, each.knows, partial(parse_network, network=each, use_gmprocess=use_gmprocess))
+        for each in NETWORKS
+    ]
+    return [*FORMATS.values(), *others]
 
 
 def _read_components(file: Path, given: Declared, *, use_obspy: bool) -> list[GroundMotion]:
@@ -252,7 +271,7 @@ def _read_components(file: Path, given: Declared, *, use_obspy: bool) -> list[Gr
         if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
     lines = _text.text_lines(file, content)
-    for form in FORMATS.values():
+    for form in _text_formats(use_gmprocess=use_obspy):
         if form.known(lines):
             found = form.parse(file, lines)
             if given.units is not None and not given.common:
@@ -318,7 +337,8 @@ def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
     The text says both peaks, and whether they agree when the mean is subtracted; it is empty if they agree, or none is
     stated. For a mean that explains the difference, the first value is at most `MAX_PEAK_MISMATCH`.
     """
-    stated, done = record_info_of(motion).stated_pga, record_info_of(motion).processing
+    stated, processing = record_info_of(motion).stated_pga, record_info_of(motion).processing or ""
+    done = MEAN_SUBTRACTED if MEAN_SUBTRACTED in processing else ""
     if not stated:
         return 0.0, ""
     difference = _relative_difference(motion.pga, stated)

@@ -5,28 +5,32 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Literal
 
-from rockflex.motion._findings import Finding
+from rockflex.motion._findings import Evidence, Finding, settled
 
 Direction = Literal["horizontal", "vertical", "down"]
 CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
 SEPARATORS = "-_. "  # between the station and the component in the name of a file
 DOWN_NAMES = "DN|DWN|DOWN"  # positive downwards
-UP_NAMES = f"UP|UD|U-D|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN_NAMES}"
-COMPASS = "[NSEW]|NS|EW|N-S|E-W|NORTH|SOUTH|EAST|WEST|SOU|EAS"
+UP_NAMES = f"UP|UPX|UD[12]?|U-D|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN_NAMES}"  # UPX in names of ITACA's files
+COMPASS = "[NSEW]|NS[X12]?|EW[12]?|WEX?|N-S|E-W|NORTH|SOUTH|EAST|WEST|SOU|EAS"
 # Directions in which a component is positive, in degrees from north.
 AZIMUTHS = {
     **dict.fromkeys(("N", "NS", "N-S", "NORTH"), 0.0),
-    **dict.fromkeys(("E", "EW", "E-W", "EAST"), 90.0),
+    **dict.fromkeys(("E", "EW", "E-W", "WE", "EAST"), 90.0),
     **dict.fromkeys(("S", "SOUTH"), 180.0),
     **dict.fromkeys(("W", "WEST"), 270.0),
 }
 BEARING = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d+)?)\s*([EW])", re.IGNORECASE)
 VERTICAL_NAME = re.compile(rf"{UP_NAMES}|U|V|Z|V[12]", re.IGNORECASE)
 HORIZONTAL_NAME = re.compile(
-    rf"[NS]?\s*\d+(?:\.\d+)?\s*[EW]?|{COMPASS}|[LTH][12]?|LONG?|TRAN?S?|{CHANNEL}[NE12]", re.IGNORECASE
+    rf"[NS]?\s*\d+(?:\.\d+)?\s*[EW]?|{COMPASS}|[LTH][12]?|LONG?|TRAN?S?|LONGITUDINAL|TRANSVERSE|RADL|TANG|{CHANNEL}[NE12]",
+    re.IGNORECASE,
 )
-SEPARATED_SUFFIX = re.compile(rf"(.*)(?:[-_. ](?:{UP_NAMES})|[-_.][VZ])", re.IGNORECASE)
+SEPARATED_SUFFIX = re.compile(rf"(.*)(?:[-_. ](?:{UP_NAMES})|[-_.][UVZ])", re.IGNORECASE)
+CODE_IN_NAME = re.compile(r"[BCEHLS][HLN][ENZ12]")  # of a channel, between dots or underscores
+HORIZONTAL_SUFFIX = re.compile(r".*[-_.](?:[NE]|NS[X12]?|EW[12]?|WEX?)", re.IGNORECASE)
 DOWN_SUFFIX = re.compile(rf".*(?:{DOWN_NAMES})", re.IGNORECASE)
+KNET_SUFFIX = re.compile(r"\.(?:NS|EW|UD)[12]?", re.IGNORECASE)
 COPY_SUFFIX = re.compile(r"(?: \(\d+\)| - copy)+$", re.IGNORECASE)  # added to a name by browsers and desktops
 JOINED_SUFFIX = re.compile(rf"(.*?)(?:{UP_NAMES}|(?<=\d)V|-V[12])", re.IGNORECASE)
 
@@ -141,21 +145,93 @@ class RecordInfo:
         return replace(self, **found)
 
 
+@dataclass(frozen=True)
+class FoundComponent:
+    """A component by its name in the source, if it has one; its direction and azimuth, and what says so."""
+
+    name: str | None = None
+    direction: Direction | None = None
+    azimuth: float | None = None
+    findings: tuple[Finding, ...] = ()
+
+
+def found_component(file: Path, *stated: Evidence[str], several: bool = False) -> FoundComponent:
+    """Return what is said of a component in its header, the first word being its name, and by the name of its file.
+
+    A component is vertical if the header calls it UP, DWN, V, UD, HNZ and the like, or if the name of the file has such
+    a word after a hyphen, a dot or an underscore; the name of a file of `several` components says nothing. PEER files
+    may also join station and component, as in TCU078V.AT2; this is accepted unless the header says something else.
+
+    Raises
+    ------
+    InputError
+        If one says that it is vertical, and another that it is horizontal.
+    """
+    words = [each for each in stated if each.value.strip()]
+    ways: list[Evidence[Direction]] = []
+    for each in words:
+        if (stated_way := _direction_of_word(each.value)) is not None:
+            ways.append(Evidence(stated_way, each.said))
+    by_name = None if several else _direction_in_name(file) or (None if ways else _joined_direction(file))
+    if by_name is not None:
+        ways.append(Evidence(by_name, f'name of the file "{file.name}"'))
+    way = settled(
+        file,
+        "component",
+        ways,
+        None,
+        "Correct the header or the name of the file, whichever is wrong.",
+        lambda one, other: (one == "horizontal") == (other == "horizontal"),
+    )
+    way = next((each for each in ways if each.value == "down"), way)
+    direction: Direction | None = None if way is None else way.value
+    name = words[0].value.strip() if words else None
+    azimuths = (component_azimuth(each.value) for each in words)
+    azimuth = next((each for each in azimuths if each is not None), None)
+    shown = ", ".join(filter(None, (name, direction)))
+    said = way.said if way else words[0].said if words else ""
+    findings = (Finding("component", shown, said),) if shown else ()
+    return FoundComponent(name, direction, azimuth if direction in (None, "horizontal") else None, findings)
+
+
 def component_direction(file: Path, component: str | None = None) -> Direction | None:
     """Return the direction of a component, or None if it is not stated; "down" is vertical, but positive downwards.
 
-    A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
-    after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
-    unless the header (`component`) names a horizontal component, for example an azimuth.
+    `component` is its name in a header. It is told as in `found_component`.
     """
-    stated = (component or "").strip()
-    if VERTICAL_NAME.fullmatch(stated):
-        return _vertical_direction(stated)
-    stem = COPY_SUFFIX.sub("", file.stem)
+    return found_component(
+        file, *([] if component is None else [Evidence(component, f'header "{component}"')])
+    ).direction
+
+
+def _direction_of_word(word: str) -> Direction | None:
+    text = word.strip()
+    if VERTICAL_NAME.fullmatch(text):
+        return _vertical_direction(text)
+    number = text.isdecimal()  # which may be a code instead of an azimuth
+    return (
+        "horizontal" if HORIZONTAL_NAME.fullmatch(text) and not (number and component_azimuth(text) is None) else None
+    )
+
+
+def stem_with_component(file: Path) -> str:
+    """Return the name of a file without its suffix, unless that is the component, as in K-NET's files."""
+    return file.stem + file.suffix.replace(".", "-") if KNET_SUFFIX.fullmatch(file.suffix) else file.stem
+
+
+def _direction_in_name(file: Path) -> Direction | None:
+    stem = COPY_SUFFIX.sub("", stem_with_component(file))
     if SEPARATED_SUFFIX.fullmatch(stem):
         return _vertical_direction(stem)
-    if HORIZONTAL_NAME.fullmatch(stated):
-        return "horizontal"
+    codes = [word for word in re.split("[-_. ]", stem)[1:] if CODE_IN_NAME.fullmatch(word)]
+    if codes:
+        return "vertical" if codes[-1].endswith("Z") else "horizontal"
+    return "horizontal" if HORIZONTAL_SUFFIX.fullmatch(stem) else None
+
+
+def _joined_direction(file: Path) -> Direction | None:
+    """Return the direction in the name of a file of PEER, which may join station and component."""
+    stem = COPY_SUFFIX.sub("", file.stem)
     from_peer = file.suffix.lower() == ".at2" or re.match(r"RSN\d", file.name, re.IGNORECASE)
     return _vertical_direction(stem) if from_peer and JOINED_SUFFIX.fullmatch(stem) else None
 

@@ -179,8 +179,11 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
     except OSError as error:
         raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
     info = motion.metadata or RecordInfo()
-    # The temporary file has another name.
-    info = replace(info, direction=component_direction(Path(shown), info.component) or info.direction)
+    try:  # the temporary file has another name
+        direction = component_direction(Path(shown), info.component)
+    except InputError as error:
+        raise Refusal({field: str(error)}) from error
+    info = replace(info, direction=direction or info.direction)
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
     check_record_length(named, field)
     return named
