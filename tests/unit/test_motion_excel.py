@@ -129,8 +129,10 @@ def test_hidden_columns_are_left_out_and_hidden_rows_refused(tmp_path):
 
 def test_sheets_of_something_else_beside_a_record(tmp_path):
     peaks = [["story", "drift (%)"], [1, 0.2], [2, 0.3], [3, 0.1]]
-    file = write_excel(tmp_path, {"record": [LABELS, *ROWS], "peaks": peaks})
-    with pytest.warns(rf.RecordWarning, match=r"left out sheet 'peaks' \(table\)"):
+    target = [["Period (s)", "Sa (g)"], [0.0, 0.3], [0.1, 0.75], [0.2, 0.75]]
+    file = write_excel(tmp_path, {"record": [LABELS, *ROWS], "peaks": peaks, "target": target})
+    said = r"^records\.xlsx: left out sheet 'peaks' \(table\), sheet 'target' \(spectrum\)\.$"
+    with pytest.warns(rf.RecordWarning, match=said):
         assert [motion.name for motion in rf.read_components(file)] == ["records"]
     with pytest.raises(rf.InputError, match=r"records\.xlsx"):
         rf.read_motion(write_excel(tmp_path, {"peaks": peaks}))

@@ -179,6 +179,7 @@ def test_of_files_without_an_acceleration_all_are_named(mixed):
         ("lab.csv", COLUMNS.replace("time (s),acc (g)", "left,right"), "does not state the unit"),
         ("rec.th", COLUMNS + "0.04,x\n", "line 6"),
         ("empty.txt", "", "is empty"),
+        ("knet.csv", "#K-NET CSV\n#Event\n#OriginTime,Latitude\n#2020/01/01 00:00:00,31.7\n", "knet.csv"),
     ],
 )
 def test_a_record_that_cannot_be_read_is_an_error_beside_others(mixed, name, text, words):
@@ -198,7 +199,7 @@ def test_files_of_any_suffix_are_read_if_they_name_an_acceleration(tmp_path):
     others = {
         "disp.out": BARE,
         "photo.png": "\x89PNG\x00\x01",
-        "readme.md": "Records of accelerations in g\n",
+        "readme.md": "# K-NET\nOrigin Time       2006/01/18 23:25:00\n" + knet("N-S") + COLUMNS,
         "page.html": "<html><p>Accelerations in g</p>\n1\n2\n3\n</html>\n",
         "matrix.mtx": "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 1\n1 2 1\n2 2 1\n",
     }

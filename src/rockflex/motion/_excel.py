@@ -97,7 +97,7 @@ def parse_excel(file: Path, content: bytes, given: Declared) -> list[GroundMotio
             found="no numbers",
         )
     if left:
-        warnings.warn(f"{file}: left out {first_texts_shown(left)}.", RecordWarning, stacklevel=2)
+        warnings.warn(f"{file.name}: left out {first_texts_shown(left)}.", RecordWarning, stacklevel=2)
     if len(found) == 1:
         ((title, motions),) = found.items()
         long = len(f"{file.stem}-{title}")

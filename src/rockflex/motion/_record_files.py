@@ -24,6 +24,8 @@ RECORD_SUFFIXES = (
     *(".mseed", ".miniseed", ".msd", ".sac", ".gse", ".gse2", ".evt"),
 )
 ARCHIVE_SUFFIXES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".z")
+# Texts about records, which may name a network and accelerations as these do.
+DOCUMENT_SUFFIXES = (".md", ".rst", ".html", ".htm", ".xml", ".json", ".toml")
 # Files of the system, and that of `rockflex select` beside the records that it writes.
 SYSTEM_NAMES = ("__macosx", "thumbs.db", "ehthumbs.db", "desktop.ini", "summary.json")
 HEAD_BYTES = 4096  # bytes of a file that tell a format
@@ -94,7 +96,7 @@ def files_of_folder(folder: Path) -> FolderFiles:
             suffix = path.suffix.lower()
             read = suffix in RECORD_SUFFIXES or suffix in SUFFIXES
             archive = not read and suffix in ARCHIVE_SUFFIXES
-            read = read or (not archive and _begins_as_record(path))
+            read = read or (not archive and suffix not in DOCUMENT_SUFFIXES and _begins_as_record(path))
             (found.files if read else found.archives if archive else found.others).append(path)
     if not found.files:
         text = (
@@ -123,8 +125,7 @@ def _begins_as_record(file: Path) -> bool:
     if lines and is_of_a_network(lines):
         return True
     lines = (_text.decoded_text(content) or "").splitlines()
-    markup = bool(lines) and lines[0].lstrip().startswith("<")  # a page of a browser
-    return not markup and has_rows_of_numbers(lines) and names_acceleration(file, lines)
+    return has_rows_of_numbers(lines) and names_acceleration(file, lines)
 
 
 def fault_of_file(file: Path, error: InputError) -> InputError:
@@ -135,6 +136,8 @@ def fault_of_file(file: Path, error: InputError) -> InputError:
         return error
     try:
         lines = _text.read_text_lines(file)
+        if is_of_a_network(lines):
+            return error
         if quantity is not None and not names_acceleration(file, lines):
             return NoAccelerationError(str(error), found=quantity, field=error.field)
         if suffix in TEXT_SUFFIXES and not has_rows_of_numbers(lines):
