@@ -95,6 +95,13 @@ def test_what_is_no_acceleration_is_refused_by_name(tmp_path, name, text, quanti
         rf.read_motion(write(tmp_path, text, name), units=None if name.endswith("2") else "g", dt=0.01)
 
 
+def test_values_of_one_sign_without_a_label_are_no_acceleration(tmp_path):
+    text = columns([0.3 + 0.01 * k for k in range(40)], dt=0.02)
+    with pytest.raises(rf.InputError, match="values are positive, as those of a spectrum"):
+        rf.read_motion(write(tmp_path, text), units="g")
+    assert rf.read_motion(write(tmp_path, "time (s),acc (g)\n" + text)).acceleration.size == 40
+
+
 @pytest.mark.parametrize(
     ("head", "scale"),
     [("t_ms,acc_g\n", 1e3), ("time [ms],acc_g\n", 1e3), ("t (µs),acc in g\n", 1e6), ("Time (min),acc, g\n", 1 / 60)],

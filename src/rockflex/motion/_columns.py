@@ -38,6 +38,7 @@ RECORD_FIELDS = {
     each.name: FIELD_TYPES.get(each.type, str) for each in fields(RecordInfo) if each.name not in NOT_WRITTEN
 }
 OTHERS = {"spectrum": "a spectrum", "period": "a spectrum", "frequency": "a spectrum", "counts": "counts"}
+MIN_OF_ONE_SIGN = 20  # samples; fewer may have one sign by chance
 # Units of columns of times that a caller who gives the step need not name, in s.
 TIME_SCALES = (1.0, 1e-3, 1e-6, 1e-9, 60.0, 86400.0)
 
@@ -87,6 +88,17 @@ def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: 
             f"{file}, line {line}: the first value, {cell}, is the time step. Delete the line if it is no sample; if "
             'it is one, say layout="columns".',
             field="layout",
+        )
+    if (
+        not labels
+        and not header.quantities
+        and values[places[0]].size >= MIN_OF_ONE_SIGN
+        and values[places[0]].min() > 0.0
+    ):
+        raise NoAccelerationError(
+            f"{file}: all {values[places[0]].size} values are positive, as those of a spectrum are and no acceleration "
+            'is. If this is one, label its column: "time (s), acc (g)".',
+            found="only positive values",
         )
     own = table.heads[:1] == [RECORD_MARK]
     step = _column_time_step(file, table, roles.time, labels, header, given, trusted=own)

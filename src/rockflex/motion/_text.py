@@ -17,14 +17,13 @@ from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._labels import parse_label
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._units import BRACKET, AccelerationUnit, acceleration_unit, end_of_last_bracket, parse_unit
+from rockflex.motion._units import BRACKET, AccelerationUnit, end_of_last_bracket, parse_unit
 
 MAX_HINTED = 40  # characters of a cell about which a hint is given
 MAX_PEAK_G = 5.0  # in g; no recorded ground acceleration comes near it
 # Possessive, like all of these patterns: a match is never retried in part, so no text takes long.
 DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
 COMMA = re.compile(r"([+-]?+\d*+),\d++(?:[EeDd][+-]?+\d++)?+")  # a number with a decimal comma
-SECONDS = ("s", "sec", "secs", "second", "seconds")
 TIME_LABEL = re.compile(r"(?:t|time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
 # Signs and blanks as word processors write them.
 PLAIN_SIGNS = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " ", "\ufeff": None})
@@ -39,22 +38,6 @@ QUOTED = re.compile(r'"[^"]*+"')
 QUOTED_OR_WORD = re.compile(r'"[^"]*+"|[^\s"]++')
 THOUSANDS = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})++\.\d")
 EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
-
-
-def agreed_unit_name(file: Path, where: str, written: str, given: str | None, units: str) -> str | None:
-    """Return the unit that a header states, or the one given; they must agree. `units` may be written."""
-    unit = acceleration_unit(written)
-    stated = None if unit is None else str(unit)
-    if written and stated is None:
-        raise InputError(
-            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
-            f"Write it as {units}, and convert the values if necessary."
-        )
-    if stated and given not in (None, stated):
-        raise InputError(
-            f"{file}: the {where} says {stated}, but units={shown(given)} was given. Leave units out.", field="units"
-        )
-    return stated or given
 
 
 def read_file_bytes(path: str | Path) -> bytes:
