@@ -1,7 +1,8 @@
 """Change record files at random and read them: every one is read, or refused by an InputError, soon.
 
 Needs atheris: ``pip install atheris``, then ``python scripts/fuzz_readers.py FOLDER -max_total_time=600``, with a
-folder of files to begin with. A file that raises something else, or takes longer than PATIENCE, ends the run and is kept.
+folder of files to begin with. A file that raises something else, or takes longer than PATIENCE, ends the run, and is
+kept.
 """
 
 import sys
