@@ -126,6 +126,10 @@ def test_peaks_of_several_components(write, installed):
     installed(Trace("BNZ", [0.0, 1.196, 0.0]), Trace("BN1", [0.0, 0.0, -20.0]))
     found = rf.read_components(write("CWB"))
     assert [motion.metadata.stated_pga for motion in found] == pytest.approx([0.01196, 0.2])
+    in_a_line = HEADS["NSMN"].replace("(N-S) 20.0", "(N-S) 20.0 (E-W) 10.0 (U-D) 5.0")
+    installed(Trace("HN1"), Trace("HN2", [10.0, 0.0, 0.0]), Trace("HNZ", [5.0, 0.0, 0.0]))
+    found = rf.read_components(write("NSMN", in_a_line + ROWS))
+    assert [motion.metadata.stated_pga for motion in found] == pytest.approx([0.2, 0.1, 0.05])
 
 
 @pytest.mark.parametrize(
@@ -158,7 +162,7 @@ def test_steps_made_equal_are_told(write, installed):
     assert (motion.dt, motion.metadata.processing) == (0.004, "uncorrected; resampled to equal steps")
 
 
-def test_what_it_raises_is_told_by_name(write, installed, capsys):
+def test_what_it_raises_is_told_by_name(write, installed, capsys, caplog):
     installed(error=BaseException("a line is missing"))
     with pytest.raises(
         rf.InputError, match=r"is a file of Turkey's NSMN, but gmprocess cannot read it: a line is miss"
@@ -167,7 +171,7 @@ def test_what_it_raises_is_told_by_name(write, installed, capsys):
     installed()
     with pytest.raises(rf.InputError, match="it holds no samples"):
         rf.read_motion(write("NSMN"))
-    assert capsys.readouterr() == ("", "")  # nor does it write to the log
+    assert (*capsys.readouterr(), caplog.records) == ("", "", [])  # nor does it write to the log
     installed(error=KeyboardInterrupt())
     with pytest.raises(KeyboardInterrupt):
         rf.read_motion(write("NSMN"))

@@ -97,6 +97,11 @@ def test_components_that_a_header_calls_vertical(component):
     assert component_direction(Path("RSN1_X_ABC.AT2"), component) == expected
 
 
+def test_a_component_that_one_calls_vertical_and_another_down_is_down():
+    assert component_direction(Path("RSN1_X_ABC-DWN.AT2"), "V") == "down"
+    assert component_direction(Path("RSN1_X_ABC-UP.AT2"), "DOWN") == "down"
+
+
 @pytest.mark.parametrize(
     "component", ["0", "90", "000", "345", "N", "E", "NS", "EW", "L", "T1", "N55W", "S 35 E", "HNE"]
 )

@@ -191,7 +191,7 @@ def found_component(file: Path, *stated: Evidence[str], several: bool = False) -
     shown = ", ".join(filter(None, (name, direction)))
     said = way.said if way else words[0].said if words else ""
     findings = (Finding("component", shown, said),) if shown else ()
-    return FoundComponent(name, direction, azimuth if direction in (None, "horizontal") else None, findings)
+    return FoundComponent(name, direction, azimuth, findings)
 
 
 def component_direction(file: Path, component: str | None = None) -> Direction | None:
