@@ -34,6 +34,7 @@ ERROR_CELL = re.compile(
 )
 PERCENT = re.compile(r"%[\s;,]*+")  # after a number, its unit
 MISTYPED = re.compile(r"[OolI.,+-]*+\d[\dOolIxX.,+-]*+")  # a number with a letter in it
+STATEMENT = re.compile(r"\w++\s*+[:=]")  # such as "units: g", whose words are no labels
 QUOTED = re.compile(r'"[^"]*+"')
 QUOTED_OR_WORD = re.compile(r'"[^"]*+"|[^\s"]++')
 THOUSANDS = re.compile(r"(?<![\d.,])\d{1,3}(?:,\d{3})++\.\d")
@@ -361,6 +362,8 @@ def _column_labels(
         labels = apart if len(apart) == n_columns else _header_labels(head, separator)
         last = i == filled[-1][0] or bool(units)
         if len(labels) != n_columns or not any(re.search("[a-zA-Z]", label) for label in labels):
+            continue
+        if separator is None and n_columns > 1 and STATEMENT.match(head):
             continue
         if not last and not any(parse_label(label).kind in ("time", "acceleration") for label in labels):
             continue
