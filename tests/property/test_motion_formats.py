@@ -1,12 +1,14 @@
 """What is written in the format of a network comes back."""
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rockflex as rf
 from record_samples import cosmos, csmip, esm, geonet, knet, smc
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*about 1 g")  # of samples at random
 SETTINGS = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 SAMPLES = st.lists(st.floats(-900.0, 900.0).map(lambda value: round(value, 3)), min_size=3, max_size=40)
 

@@ -213,7 +213,7 @@ def test_files_of_a_folder_that_are_left_out_are_told_once(tmp_path):
     folder.mkdir()
     for component in ("000", "090", "-UP"):
         (folder / f"RSN1_X_ABC{component}.AT2").write_text(RECORD.format(component.strip("-")))
-    (folder / "_SearchResults.csv").write_text("Result ID, Spectral Ordinate\n")
+    (folder / "RSN2_X_GHI000.AT2").write_text(RECORD.format("000")[:-8])
     file = tmp_path / "cloud.toml"
     text = f'study = "cloud"\n[records]\nfolder = "records"\n[[structures]]\nname = "S"\n{FRAME}'
     file.write_text(text)

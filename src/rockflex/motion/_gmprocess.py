@@ -61,7 +61,7 @@ NETWORKS = (
     Network("CWB", "Taiwan's CWB", r"\A#(?:Earthquake Information|StationCode:)"),
     Network("ISESD", "Europe's ISESD", r"\A\s*+file:.*\n\s*+earthquake code:", is_read=False),
     Network("NSMN", "Turkey's NSMN", r"\A\s*+STRONG GROUND MOTION RECORDS OF TURK"),
-    Network("RENADIC", "Chile's RENADIC", r"^UNIVERSIDAD DE CHILE|\bRENADIC\b"),
+    Network("RENADIC", "Chile's RENADIC", r"^UNIVERSIDAD DE CHILE - RENADIC"),
     Network("SIGMA", "the SIGMA project", r"\A\s*+Event Date & Time\s*+:.*\n\s*+Station Code / Name", is_read=False),
     Network("UNAM", "Mexico's UNAM", r"^ARCHIVO EST[AÁ]NDAR DE ACELERACI[OÓ]N"),
     Network("USC", "California's USC", r"\A\s*+FILE\s++\d++ OF UNCORRECTED ACCELEROGRAM DATA|^STATION USC#"),

@@ -94,10 +94,13 @@ def read_motion(
 
     - AT2 files of PEER, in g; see `read_at2`.
     - K-NET and KiK-net ASCII: counts times the scale factor of the header. The mean of the record is subtracted, as
-      for the peak that the header states.
-    - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
-    - COSMOS (V1, V2; V0 if the header states the value of a count), with one or more channels.
+      for the peak that the header states. K-NET CSV, without the offsets in its header, and CSV of JMA: three
+      components.
+    - ESM, ITACA (also before DYNA 1.2) and TADAS of AFAD, in the unit that the header states.
+    - COSMOS (V1, V2; V0 if the header states the value of a count), CSMIP (V1, RAW, V2) and SMC of the USGS, with one
+      or more channels.
     - GeoNet (V1A, V2A), with all components of an instrument, in mm/s².
+    - BHRC, CWB, NSMN, RENADIC, UNAM and USC through gmprocess; needs ``rockflex[gmprocess]``.
     - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks, and cells may stand in
       quotes; decimals may be marked by commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A
       single column is the acceleration, two columns are time and acceleration, unless a header line names them as two

@@ -17,8 +17,6 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion import (
     GroundMotion,
-    RecordInfo,
-    component_direction,
     is_vertical_component,
     read_motion_without_obspy,
 )
@@ -27,6 +25,7 @@ from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOM
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_RECORDS = 64  # in memory
+MAX_NAME = 60  # characters of the name under which a file is stored while it is read
 MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
@@ -167,7 +166,8 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
     _check_upload_size(shown, content, field)
     try:
         with TemporaryDirectory() as folder:
-            file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
+            # The name and its suffix are evidence of what the file holds.
+            file = Path(folder) / (re.sub(r"[^A-Za-z0-9._-]", "_", shown)[-MAX_NAME:].lstrip(".") or "record.txt")
             file.write_bytes(content)
             try:
                 motion = read_motion_without_obspy(file, units=units, dt=dt)
@@ -178,13 +178,7 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
                 raise Refusal({field: said}) from error
     except OSError as error:
         raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
-    info = motion.metadata or RecordInfo()
-    try:  # the temporary file has another name
-        direction = component_direction(Path(shown), info.component)
-    except InputError as error:
-        raise Refusal({field: str(error)}) from error
-    info = replace(info, direction=direction or info.direction)
-    named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
+    named = replace(motion, name=Path(shown).stem or "record")
     check_record_length(named, field)
     return named
 
