@@ -310,6 +310,25 @@ def test_years_of_two_digits(tmp_path, date, year):
     assert rf.read_at2(write(tmp_path, text, "a.AT2")).metadata.year == year
 
 
+def test_the_size_of_an_acceleration_is_no_component(tmp_path):
+    head = "Time (s),Acceleration x (m/s^2),Acceleration y (m/s^2),Absolute acceleration (m/s^2)\n"
+    rows = "".join(f"{0.01 * k:.2f},{v},{v},{abs(v)}\n" for k, v in enumerate(VALUES))
+    assert [each.name for each in rf.read_components(write(tmp_path, head + rows))] == ["record-x", "record-y"]
+
+
+def test_one_component_in_two_states_is_refused(tmp_path):
+    head = "Time (s),raw acc (g),corrected acc (g)\n"
+    rows = "".join(f"{0.01 * k:.2f},{v},{v}\n" for k, v in enumerate(VALUES))
+    with pytest.raises(rf.InputError, match="'raw acc .*names no direction"):
+        rf.read_components(write(tmp_path, head + rows))
+
+
+@pytest.mark.parametrize("label", ["strain", "drift (%)", "voltage (V)", "5% damped (g)", "temperature (C)"])
+def test_other_quantities_beside_times_are_refused_by_their_label(tmp_path, label):
+    with pytest.raises(rf.InputError, match="another quantity"):
+        rf.read_motion(write(tmp_path, columns(head=f"time (s),{label}\n")), units="g")
+
+
 def test_a_layout_that_there_is_not(tmp_path):
     with pytest.raises(rf.InputError, match='layout must be "columns" or "sequence"') as error:
         rf.read_motion(write(tmp_path, columns()), units="g", layout="rows")

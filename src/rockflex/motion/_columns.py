@@ -1,5 +1,6 @@
 """Records as columns of numbers: which column is what, in which unit and at which step."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
@@ -37,7 +38,15 @@ FIELD_TYPES: dict[Any, type[int | float]] = {int | None: int, float | None: floa
 RECORD_FIELDS = {
     each.name: FIELD_TYPES.get(each.type, str) for each in fields(RecordInfo) if each.name not in NOT_WRITTEN
 }
-OTHERS = {"spectrum": "a spectrum", "period": "a spectrum", "frequency": "a spectrum", "counts": "counts"}
+# Words of labels for what was done to one acceleration, which make no component of it.
+STATES = re.compile(r"raw|(?:un)?(?:corrected|filtered|processed)|filt|smoothed|baseline.*", re.IGNORECASE)
+OTHERS = {
+    "other": "another quantity",
+    "spectrum": "a spectrum",
+    "period": "a spectrum",
+    "frequency": "a spectrum",
+    "counts": "counts",
+}
 MIN_OF_ONE_SIGN = 20  # samples; fewer may have one sign by chance
 # Units of columns of times that a caller who gives the step need not name, in s.
 TIME_SCALES = (1.0, 1e-3, 1e-6, 1e-9, 60.0, 86400.0)
@@ -90,7 +99,7 @@ def parse_columns(file: Path, table: _text.NumericTable, given: Declared, name: 
             field="layout",
         )
     if (
-        not labels
+        (not labels or labels[places[0]].kind == "unknown")
         and not header.quantities
         and values[places[0]].size >= MIN_OF_ONE_SIGN
         and values[places[0]].min() > 0.0
@@ -206,6 +215,12 @@ def column_roles(file: Path, labels: list[Label], n_columns: int) -> ColumnRoles
     if not along and vertical is not None and timed:
         return ColumnRoles(time, (vertical,), None)
     names = {labels[k].component for k in along} - {""}
+    states = [label for label in (labels[k] for k in along) if STATES.fullmatch(label.component.strip())]
+    if len(along) > 1 and states:
+        raise InputError(
+            f"{file}: the label {shown(states[0].text)} names no direction, so that one component may stand here more "
+            "than once. Keep the column that is to be used."
+        )
     if len(along) > 1 and len(names) == len(along):
         return ColumnRoles(time, tuple(along), vertical)
     other = next((label for label in labels if label.kind in ("velocity", "displacement", "force", *OTHERS)), None)
@@ -229,7 +244,7 @@ def _no_acceleration(file: Path, label: Label) -> NoAccelerationError:
     return NoAccelerationError(
         f"{file}: an acceleration is expected, but the column is labelled {shown(label.text)}, {what}. Give the file "
         "of the acceleration.",
-        found=what.removeprefix("a "),
+        found="table" if label.kind == "other" else what.removeprefix("a "),
     )
 
 

@@ -48,7 +48,7 @@ TYPE_LINE = re.compile(
     re.IGNORECASE,
 )
 STEP_NAME = re.compile(
-    r"^(?:delta|step|interval)(?![A-Za-z])|\b(?:dt|d_t|delta_?t|Δt|time[\s_-]*+(?:step|interval|increment|spacing)|(?:sampling|sample)[\s_-]*+"
+    r"^(?:delta(?!\s*+t\b)|step|interval)(?![A-Za-z])|\b(?:dt|d_t|delta_?t|Δt|delta\s++t|time[\s_-]*+(?:step|interval|increment|spacing)|(?:sampling|sample)[\s_-]*+"
     r"(?:interval|period|step|time|spacing)|intervalo[\w\s]{0,20}|paso(?:[\s_-]++de[\s_-]++tiempo)?|"
     r"pas\s++de\s++temps|zeitschritt|abtastintervall|passo)(?![A-Za-z])",
     re.IGNORECASE,
@@ -255,6 +255,8 @@ def _add_component(found: Header, line: str, said: str) -> None:
     for place in COMPONENT.finditer(line):
         word = place[1].strip("\"'.")
         channel = word.split(".")[1] if word.count(".") == 3 else word
+        if len(channel) == 1 and channel.isdigit():
+            continue  # the number of a channel
         if VERTICAL_NAME.fullmatch(channel) or is_horizontal_component_name(channel):
             found.components.append(Evidence(channel, said))
             return

@@ -7,7 +7,7 @@ from typing import Literal
 from rockflex.motion._record_info import HORIZONTAL_NAME, VERTICAL_NAME
 from rockflex.motion._units import BRACKET, Quantity, Unit, end_of_last_bracket, parse_unit
 
-Kind = Quantity | Literal["row number", "period", "component", "unknown"]
+Kind = Quantity | Literal["row number", "period", "component", "other", "unknown"]
 # The last character of a label may be a number, as in acc1.
 WORDS: tuple[tuple[Kind, str], ...] = (
     ("spectrum", r"p?s[_-]?[adv]|p?s[_-]?a[_-]?rotd\d*|spectr\w*|response\s*spectr\w*|sa\s*\(t\)|sa[_-]?rotd\d*"),
@@ -23,6 +23,12 @@ WORDS: tuple[tuple[Kind, str], ...] = (
     ("displacement", r"d|u|dis|disp[a-z]*|weg|verschiebung\w*|spost\w*|desp\w*|dépl\w*"),
     ("force", r"force|load|kraft|fuerza|forza|p"),
     ("counts", r"counts?|cnts?"),
+    # Of the size of an acceleration, and what else instruments record.
+    (
+        "other",
+        r"(?:abs|absolute|resultant|total|norm|magnitude|srss|vector)\b.*|strain|drift|rotation|temp\w*|"
+        r"volt\w*|pressure|moment|angle|tilt|\d+\s*%\s*damped|damped",
+    ),
 )
 KINDS: list[tuple[Kind, re.Pattern[str]]] = [
     (kind, re.compile(rf"(?:{words})", re.IGNORECASE)) for kind, words in WORDS
@@ -82,7 +88,7 @@ def parse_label(text: str) -> Label:
         found = parse_unit(inside)
         if found is not None and unit is None:
             unit = found
-        elif _is_component(inside):
+        elif _is_component(inside) and (len(inside) > 1 or ACCELERATION.search(plain)):  # volts are no direction
             component = inside
         elif inside and unit is None:
             unknown = inside
