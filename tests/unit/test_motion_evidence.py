@@ -319,7 +319,7 @@ def test_the_size_of_an_acceleration_is_no_component(tmp_path):
 def test_one_component_in_two_states_is_refused(tmp_path):
     head = "Time (s),raw acc (g),corrected acc (g)\n"
     rows = "".join(f"{0.01 * k:.2f},{v},{v}\n" for k, v in enumerate(VALUES))
-    with pytest.raises(rf.InputError, match="'raw acc .*names no direction"):
+    with pytest.raises(rf.InputError, match=r"'raw acc .*names no direction"):
         rf.read_components(write(tmp_path, head + rows))
 
 
