@@ -240,13 +240,18 @@ def careless(sources: dict[str, str]) -> list[str]:
 
 
 SOURCES = read(ROOT)
-FOUND = imports(SOURCES)
 
 
-def test_the_walk_sees_the_package() -> None:
+@pytest.fixture(scope="module")
+def found() -> list[Import]:
+    """Every import of the package."""
+    return imports(SOURCES)
+
+
+def test_the_walk_sees_the_package(found: list[Import]) -> None:
     assert {"rockflex.__init__", "rockflex._errors", "rockflex.solve.engine"} <= SOURCES.keys()
-    assert any(each.when == DEFERRED for each in FOUND)
-    assert any(each.when == TYPING for each in FOUND)
+    assert any(each.when == DEFERRED for each in found)
+    assert any(each.when == TYPING for each in found)
 
 
 def test_the_table_points_downward_only() -> None:
@@ -254,16 +259,16 @@ def test_the_table_points_downward_only() -> None:
     assert set().union(*ALLOWED.values()) <= ALLOWED.keys()
 
 
-def test_layers_import_only_what_the_table_allows() -> None:
-    assert forbidden(FOUND) == []
+def test_layers_import_only_what_the_table_allows(found: list[Import]) -> None:
+    assert forbidden(found) == []
 
 
-def test_libraries_stay_in_their_place() -> None:
-    assert misplaced(FOUND) == []
+def test_libraries_stay_in_their_place(found: list[Import]) -> None:
+    assert misplaced(found) == []
 
 
-def test_no_import_cycles_between_files() -> None:
-    assert cycle(FOUND, SOURCES) == []
+def test_no_import_cycles_between_files(found: list[Import]) -> None:
+    assert cycle(found, SOURCES) == []
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ Source: Silva & Stojadinović 2024, Eqs. 13-16, 21-24, 37 and 38. State ``[θ, �
 at its end Bouc-Wen's z where there is one. N = 0 is the rigid block. A state may hold one column an instant.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -97,6 +98,9 @@ class CompleteModel:
         self.n = structure.omega.size
         self.size = 2 + 2 * self.n + (bouc_wen is not None)
         self.arm = structure.effective_mass * structure.effective_height
+        self.stiffness, self.damping = structure.omega**2, 2.0 * structure.zeta * structure.omega
+        self.arm_inertia = float(self.arm @ structure.effective_height)
+        self.about_axis = structure.i_theta - structure.m_tot * structure.half_width**2
 
     def modal(self, y: Vector) -> tuple[Vector, Vector]:
         """D and D'."""
@@ -104,16 +108,14 @@ class CompleteModel:
 
     def restoring(self, d: Vector, y: Vector) -> Vector:
         """ω_n² D_n of every mode, or what Eq. 37 puts in its place."""
-        stiffness = self.structure.omega**2
         if self.bouc_wen is None:
-            return (stiffness * d.T).T
-        return self.bouc_wen.force(stiffness[0], d, y[-1:])
+            return (self.stiffness * d.T).T
+        return self.bouc_wen.force(self.stiffness[0], d, y[-1:])
 
     def free(self, y: Vector, a: Vector | float) -> Vector:
         """D'' of Eq. 15, as if the base did not rotate."""
         d, v = self.modal(y)
-        damping = 2.0 * self.structure.zeta * self.structure.omega
-        return -a - (damping * v.T).T - self.restoring(d, y)
+        return -a - (self.damping * v.T).T - self.restoring(d, y)
 
     def resisting(self, side: int, g: Vector | float = GRAVITY) -> Vector | float:
         """Moment about the pivot of what pulls the base down, each force at its place."""
@@ -129,7 +131,7 @@ class CompleteModel:
             reach = abs(p.edge(side) - rope.x)
             chord, lever = reach * abs(turn), reach
             if self.complete:
-                chord, lever = 2.0 * reach * abs(np.sin(0.5 * turn)), reach * np.cos(0.5 * turn)
+                chord, lever = 2.0 * reach * abs(math.sin(0.5 * turn)), reach * math.cos(0.5 * turn)
             force += rope.force + rope.stiffness * chord
             moment += (rope.force + rope.stiffness * chord) * lever
         return force, side * moment
@@ -160,8 +162,7 @@ class CompleteModel:
     def inertia(self, d: Vector, side: int) -> float:
         """Factor of θ'' in its own equation: I_θ, with the masses where they are in the complete model."""
         p = self.structure
-        about_axis = p.i_theta - p.m_tot * p.half_width**2
-        inertia = about_axis + p.m_tot * (p.edge(side) if side else p.half_width) ** 2
+        inertia = self.about_axis + p.m_tot * (p.edge(side) if side else p.half_width) ** 2
         if not self.complete:
             return inertia
         return inertia + float(p.effective_mass @ (d * d - 2.0 * p.edge(side) * d))
@@ -170,35 +171,33 @@ class CompleteModel:
         """(θ'', D'') under Eqs. 13 and 14, or 23; in contact (side 0) those of Eq. 15."""
         p, (a, g) = self.structure, split(ground)
         d, v = self.modal(y)
-        turn, spin = y[0], y[1]
         if side == 0:
             return 0.0, self.free(y, a)
+        turn, spin = float(y[0]), float(y[1])
         if not self.complete:
             moment = p.l0r * (g * turn - a) - p.m_tot * g * p.edge(side)
             modes = self.free(y, a)
         else:
             m, reach = p.effective_mass, p.edge(side)
-            sin, cos = np.sin(turn), np.cos(turn)
+            sin, cos = math.sin(turn), math.cos(turn)
             # Weight and inertia force act at the centre of mass, which the flexure moves.
-            along, across = p.l0r, p.m_tot * reach - m @ d
+            along, across, beyond = p.l0r, p.m_tot * reach - float(m @ d), d - reach
             moment = g * (along * sin - across * cos) - a * (along * cos + across * sin)
-            moment -= 2.0 * spin * (v @ (m * (d - reach)))
-            modes = self.free(y, a * cos) + g * sin - spin**2 * (reach - d)
+            moment -= 2.0 * spin * float(v @ (m * beyond))
+            modes = self.free(y, a * cos - g * sin) + spin**2 * beyond
         moment -= self.pull(turn, side)[1]
         # The modal rows say D'' = modes - h* θ''; put into the row of θ:
-        left = self.inertia(d, side) - self.arm @ p.effective_height
-        rotation = (moment - self.arm @ modes) / left
+        rotation = (moment - float(self.arm @ modes)) / (self.inertia(d, side) - self.arm_inertia)
         return rotation, modes - p.effective_height * rotation
 
     def field(self, y: Vector, a: Ground, side: int) -> Vector:
         """y'."""
         rotation, modes = self.accelerations(y, a, side)
-        v = self.modal(y)[1]
         rates = np.empty(self.size)
         rates[0], rates[1] = (y[1], rotation) if side else (0.0, 0.0)
-        rates[2 : 2 + self.n], rates[2 + self.n : 2 + 2 * self.n] = v, modes
+        rates[2 : 2 + self.n], rates[2 + self.n : 2 + 2 * self.n] = y[2 + self.n : 2 + 2 * self.n], modes
         if self.bouc_wen is not None:
-            rates[-1] = self.bouc_wen.rate(v[0], y[-1])
+            rates[-1] = self.bouc_wen.rate(float(y[3]), float(y[-1]))
         return rates
 
     def responses(self, y: Vector) -> Vector:
@@ -209,11 +208,10 @@ class CompleteModel:
     def response_rates(self, y: Vector) -> Vector:
         """Their derivatives in time; no acceleration enters them."""
         v = self.modal(y)[1]
-        stiffness = self.structure.omega**2
         if self.bouc_wen is None:
-            force = (stiffness * v.T).T
+            force = (self.stiffness * v.T).T
         else:
-            force = self.bouc_wen.force(stiffness[0], v, self.bouc_wen.rate(v, y[-1:]))
+            force = self.bouc_wen.force(self.stiffness[0], v, self.bouc_wen.rate(v, y[-1:]))
         return self._combined(y[1], v, force)
 
     def _combined(self, turn: Vector, d: Vector, force: Vector) -> Vector:

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 GRAVITY = 9.81
 AT_ONCE = 1e-9  # of a sample
-RTOL = 1e-12
+RTOL = 1e-11
 
 
 @dataclass
@@ -364,7 +364,7 @@ class Twin:
                 until = min(t + 0.05 * dt, end) if fresh else end
                 found = solve_ivp(
                     lambda time, state, phase=phase, ground=ground: self.rates(time, state, phase, ground),
-                    (t, until), y, "DOP853", events=events, rtol=RTOL, atol=1e-11 * size, dense_output=True,
+                    (t, until), y, "DOP853", events=events, rtol=RTOL, atol=10.0 * RTOL * size, dense_output=True,
                     max_step=(0.01 if fresh else 0.5) * dt,
                 )  # fmt: skip
                 self.note(found, phase)

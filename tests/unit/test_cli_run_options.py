@@ -488,12 +488,11 @@ def test_histories_have_no_friction_unless_asked(tmp_path):
 
 @pytest.mark.slow
 def test_many_runs(monkeypatch):
-    scales = [item for k in range(22) for item in ("--scale", 0.5 + k / 16)]
-    arguments = (STRUCTURE, "el-centro-1940", *scales, "--model", "2DOF-S,rigid,fixed", "--friction", 0.4)
-    many = runs_of(*arguments)
-    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
-    few = runs_of(*arguments)
-    assert len(many) == 66
+    arguments = (STRUCTURE, "el-centro-1940", "--scale", 0.5, "--scale", 1.5, "--model", "2DOF-S,rigid,fixed")
+    few = runs_of(*arguments, "--friction", 0.4)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 5)
+    many = runs_of(*arguments, "--friction", 0.4)
+    assert len(many) == 6
     assert {row.pop("run_time") for row in many} == {None}
     assert all(row.pop("run_time") > 0.0 for row in few)
     assert many == few

@@ -42,29 +42,32 @@ def law():
 
 
 @pytest.fixture(scope="module")
-def slow(law):
-    return evaluated([SLOW])
+def done(law):
+    """Runs and best design of a search, made once."""
+    made = {}
 
+    def of(*requirements):
+        if requirements not in made:
+            runs = search(requirements)
+            made[requirements] = runs, best_of(runs, requirements)
+        return made[requirements]
 
-@pytest.fixture(scope="module")
-def both(law):
-    return evaluated([SLOW, STRONG])
+    return of
 
 
 def search(requirements=(SLOW,), space=SEARCH, cost=COST, structure=STRUCTURE):
     return rf.search_design(structure, SUITE, space, requirements, cost, "2DOF-S", SCALES)
 
 
-def evaluated(requirements, space=SEARCH):
-    return rf.best_design(search(requirements, space), requirements, COST, n_resamples=40)
+def best_of(runs, requirements):
+    return rf.best_design(runs, requirements, COST, n_resamples=40)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("requirements", [[SLOW], [STRONG], [SLOW, STRONG]])
-def test_the_optimum_of_a_problem_in_closed_form_is_found(law, requirements):
+def test_the_optimum_of_a_problem_in_closed_form_is_found(law, done, requirements):
     values, costs, governs = law.optimum(SEARCH, requirements)
-    runs = search(requirements)
-    found = rf.best_design(runs, requirements, COST, n_resamples=40)
+    runs, found = done(*requirements)
     best = found.designs.iloc[found.best]
     # The cheapest of 49 x 33 x 33 designs, among 68 that are run: its neighbours differ by less than a percent in cost.
     assert costs <= best["cost"] * (1.0 + 1e-9)
@@ -89,8 +92,8 @@ def test_the_optimum_of_a_problem_in_closed_form_is_found(law, requirements):
 
 
 @pytest.mark.slow
-def test_the_probabilities_are_those_of_the_law(law, both):
-    for row in both.designs.to_dict("records"):
+def test_the_probabilities_are_those_of_the_law(law, done):
+    for row in done(SLOW, STRONG)[1].designs.to_dict("records"):
         margins = {
             each.label: law.margin(each, row["half_width"], row["prestress"], row["dissipator_force"])
             for each in (SLOW, STRONG)
@@ -107,7 +110,8 @@ def test_the_probabilities_are_those_of_the_law(law, both):
 
 
 @pytest.mark.slow
-def test_the_trade_off_is_that_of_the_law(law, slow):
+def test_the_trade_off_is_that_of_the_law(law, done):
+    slow = done(SLOW)[1]
     prestress, force = (
         factors.ravel() * WEIGHT for factors in np.meshgrid(np.linspace(0, 0.4, 201), np.linspace(0, 0.2, 201))
     )
@@ -126,8 +130,8 @@ def test_the_trade_off_is_that_of_the_law(law, slow):
 
 
 @pytest.mark.slow
-def test_the_limit_that_governs_is_the_one_whose_loss_makes_it_cheaper(law, both):
-    found, (_, _, governs) = both, law.optimum(SEARCH, [SLOW, STRONG])
+def test_the_limit_that_governs_is_the_one_whose_loss_makes_it_cheaper(law, done):
+    found, (_, _, governs) = done(SLOW, STRONG)[1], law.optimum(SEARCH, [SLOW, STRONG])
     limits = found.limits.set_index("limit")
     least = found.designs.loc[found.best, "cost"]
     other = [SLOW, STRONG][1 - governs].label
@@ -138,8 +142,9 @@ def test_the_limit_that_governs_is_the_one_whose_loss_makes_it_cheaper(law, both
 
 
 @pytest.mark.slow
-def test_resamples_choose_anew(slow):
-    found, again = slow, evaluated([SLOW])
+def test_resamples_choose_anew(done):
+    runs, found = done(SLOW)
+    again = best_of(runs, [SLOW])
     pd.testing.assert_frame_equal(found.designs, again.designs)
     table, band = found.designs, found.interval.set_index("quantity")
     assert table["chosen"].sum() <= 1.0 + 1e-12
@@ -151,8 +156,8 @@ def test_resamples_choose_anew(slow):
 
 
 @pytest.mark.slow
-def test_the_same_search_runs_the_same_designs_in_any_chunks(law):
-    one = search([SLOW])
+def test_the_same_search_runs_the_same_designs_in_any_chunks(done):
+    one = done(SLOW)[0]
     two = rf.search_design(STRUCTURE, SUITE, SEARCH, [SLOW], COST, "2DOF-S", SCALES, workers=1)
     pd.testing.assert_frame_equal(one, two)
     facts = one.groupby("structure", observed=True)[["half_width", "tendon_factor", "dissipator_factor"]].first()
@@ -161,21 +166,21 @@ def test_the_same_search_runs_the_same_designs_in_any_chunks(law):
 
 
 @pytest.mark.slow
-def test_refinements_beat_the_values_given(law):
-    costs = []
-    for refinements in (0, 2, 4):
-        space = rf.DesignSearch(
-            SEARCH.half_widths, SEARCH.tendon_factors, SEARCH.dissipator_factors, refinements=refinements
-        )
-        found = evaluated([SLOW], space)
-        costs.append(found.designs.loc[found.best, "cost"])
+def test_refinements_beat_the_values_given(done):
+    spaces = [
+        rf.DesignSearch(SEARCH.half_widths, SEARCH.tendon_factors, SEARCH.dissipator_factors, refinements=refinements)
+        for refinements in (0, 2)
+    ]
+    every = [*(best_of(search([SLOW], space), [SLOW]) for space in spaces), done(SLOW)[1]]
+    costs = [found.designs.loc[found.best, "cost"] for found in every]
+    assert SEARCH.refinements == 4
     assert costs[0] > costs[1] >= costs[2]
 
 
 @pytest.mark.slow
 def test_targets_that_cannot_be_met_are_approached(law):
     hard = [rf.Requirement(0.005, 0.001, at=0.7)]
-    found = evaluated(hard)
+    found = best_of(search(hard), hard)
     assert (found.best, found.cautious, found.governs) == (None, None, "")
     assert found.notes == ("No design meets all targets. Widen the ranges, or accept a higher probability.",)
     assert found.designs["half_width"].iloc[36:].mean() > found.designs["half_width"].iloc[:36].mean()
@@ -186,7 +191,7 @@ def test_targets_that_cannot_be_met_are_approached(law):
 @pytest.mark.slow
 def test_a_best_design_at_the_end_of_a_range_is_told(law):
     easy = [rf.Requirement(0.5, 0.5, at=0.2)]
-    found = evaluated(easy)
+    found = best_of(search(easy), easy)
     best = found.designs.loc[found.best]
     assert best[["half_width", "tendon_factor", "dissipator_factor"]].tolist() == [1.0, 0.0, 0.0]
     assert found.notes == (

@@ -4,6 +4,7 @@ import asyncio
 import os
 import signal
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from threading import Event, Timer
 from time import monotonic
 
@@ -18,18 +19,27 @@ from rockflex.web._app import PageServer
 from rockflex.web._refusal import Refusal
 
 FRAME = make_frame(n_stories=3, period=0.8, aspect_ratio=6.0)
-LONG = GroundMotion(2.4 * np.random.default_rng(0).standard_normal(12_000_000), 0.005, name="long")  # seconds of work
 ASKED, SOON = 0.3, 20.0  # s: when a run is asked to stop, and when it has, on the slowest machine
 
 
+@cache
+def long_motion():
+    """Seconds of work."""
+    return GroundMotion(2.4 * np.random.default_rng(0).standard_normal(12_000_000), 0.005, name="long")
+
+
 def long_run():
-    return simulate(FRAME, LONG, "2DOF-C", "peaks", work_limit=None)
+    return simulate(FRAME, long_motion(), "2DOF-C", "peaks", work_limit=None)
+
+
+def long_runs():
+    return simulate_many([FRAME], [long_motion()] * 2, ["2DOF-C"], work_limit=None)
 
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled():
     """Compiling is not what is measured."""
-    simulate(FRAME, GroundMotion(LONG.acceleration[:200], LONG.dt), "2DOF-C", "peaks")
+    simulate(FRAME, GroundMotion(long_motion().acceleration[:200], long_motion().dt), "2DOF-C", "peaks")
 
 
 def test_a_run_that_is_asked_to_stop():
@@ -49,7 +59,7 @@ def own_handler():
 
 
 @pytest.mark.usefixtures("own_handler")
-@pytest.mark.parametrize("run", [long_run, lambda: simulate_many([FRAME], [LONG, LONG], ["2DOF-C"], work_limit=None)])
+@pytest.mark.parametrize("run", [long_run, long_runs])
 def test_an_interrupt(run):
     begun = monotonic()
     Timer(ASKED, os.kill, (os.getpid(), signal.SIGINT)).start()

@@ -11,11 +11,12 @@ ONE_LENGTH = [rm.one_sine_pulse, rm.one_cosine_pulse, rm.half_sine_pulse, rm.rec
 
 @pytest.mark.parametrize("pulse", ONE_LENGTH)
 def test_the_step_divides_the_pulse_and_is_not_above_the_asked_one(pulse):
-    assert pulse(1.0, 0.5, dt=0.005).dt == 0.005
+    assert pulse(1.0, 0.5).dt == 0.005
     assert pulse(1.0, 0.3, dt=0.1).dt == 0.1  # 0.3/0.1 is 2.9999999999999996 in floating point
     uneven = pulse(1.0, 1.0, dt=0.3)
     assert uneven.dt == 0.25
-    assert pulse(1.0, 1.0, dt=5.0).duration == 1.0  # three samples at least
+    least = pulse(1.0, 1.0, dt=5.0)
+    assert (least.duration, least.acceleration.size) == (1.0, 3)
 
 
 def test_antisymmetric_ricker_peaks_at_its_amplitude():
@@ -109,7 +110,10 @@ def test_names_tell_pulses_apart():
     ("call", "text"),
     [
         (lambda: rm.ricker_pulse(1, 0.5, kind="odd"), 'kind must be "antisymmetric" or "symmetric", but \'odd\''),
+        (lambda: rm.ricker_pulse(1, -0.5), "period must be .*but -0.5 was given"),
+        (lambda: rm.mavroeidis_papageorgiou_pulse(1, -0.5, 2, 0), "period must be .*but -0.5 was given"),
         (lambda: rm.quiet_motion(1e9, dt=1e-9), "requires 1e\\+18 samples; use a larger dt"),
+        (lambda: rm.quiet_motion(1e8 + 0.5, dt=1.0), "requires 1e\\+08 samples; use a larger dt"),
         (lambda: rm.mavroeidis_papageorgiou_pulse(1, 1, 1, 0), "gamma must be finite and above 1, but 1 was"),
         (
             lambda: rm.mavroeidis_papageorgiou_pulse(math.nan, 1, 2, 0),

@@ -209,6 +209,8 @@ def test_what_is_a_pair():
     assert chosen.names == (("x", "z"), ("y", "w"), ("ABC-NS", "abc-EW"), ("G1230", "G1320"))
     assert "6 motions that are not one of two components" in str(caught[0].message)
     assert "alone, D-N, D-E, T1, T2 and 1 more" in str(caught[0].message)
+    with pytest.warns(rf.RecordWarning, match="1 motion that is not one of two components .* alone"):
+        rf.Suite([*motions, named("alone")]).select(TARGET, 4, [0.5], measure="rotd50")
 
 
 def test_tables():
@@ -298,6 +300,17 @@ def test_near_the_best_of_all_sets(weight):
             assert np.sqrt(choice.objective_of(found)) <= 1.3 * np.sqrt(best)
             if weight == 1.0 or n == 1:
                 assert choice.objective_of(found) == pytest.approx(best, rel=1e-12)
+
+
+@pytest.mark.parametrize(("seed", "n_records", "n"), [(1, 16, 5), (16, 20, 4)])
+def test_the_best_of_thousands_of_sets_is_found(seed, n_records, n):
+    """Where the misfits of the records count a little: a search that takes them for something else misses it."""
+    choice = random_choice(seed, n_records, weight=0.05)
+    sets = np.array(list(combinations(range(n_records), n)))
+    squares = np.mean(np.log(choice.spectra) ** 2, axis=1)
+    mean = np.mean(np.log(choice.spectra[sets].mean(axis=1)) ** 2, axis=1)
+    best = sets[np.argmin(0.95 * mean + 0.05 * squares[sets].mean(axis=1))]
+    assert best_record_set(choice, n) == best.tolist()
 
 
 def test_no_exchange_of_one_record_helps():

@@ -150,24 +150,24 @@ def stop(progress):
     if progress.done == 2:
         raise KeyboardInterrupt
 
-seen = []
-whole = rf.run_study("{study}.toml")
-try:
-    rf.run_study("{study}.toml", "stopped", workers=1, progress=stop)
-except KeyboardInterrupt:
-    pass
-assert rf.StudyFolder.load("stopped").missing()
-resumed = rf.run_study("{study}.toml", "stopped", progress=seen.append)
-assert seen[0].kept == 2
-pd.testing.assert_frame_equal(resumed, whole)
-assert whole["error"].isna().all() and (whole["n_uplifts"] > 0).any()
+for study in ("both_ways", "stripes"):
+    seen, kept = [], f"stopped-{study}"
+    whole = rf.run_study(f"{study}.toml")
+    try:
+        rf.run_study(f"{study}.toml", kept, workers=1, progress=stop)
+    except KeyboardInterrupt:
+        pass
+    assert rf.StudyFolder.load(kept).missing(), study
+    resumed = rf.run_study(f"{study}.toml", kept, progress=seen.append)
+    assert seen[0].kept == 2, study
+    pd.testing.assert_frame_equal(resumed, whole)
+    assert whole["error"].isna().all() and (whole["n_uplifts"] > 0).any(), study
 """
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("study", ["both_ways", "stripes"])
-def test_a_study_that_is_stopped_and_resumed_has_the_same_table(study, site, here):
-    run(here, "-c", RESUMED.format(study=study), site=site)
+def test_a_study_that_is_stopped_and_resumed_has_the_same_table(site, here):
+    run(here, "-c", RESUMED, site=site)
 
 
 @pytest.mark.slow
@@ -199,10 +199,10 @@ def test_a_study_on_a_cluster_has_the_same_table(site, here, tmp_path_factory):
     from dask_cluster import TESTS, Cluster
 
     with Cluster(tmp_path_factory.mktemp("dask"), PYTHONPATH=path_with(site, TESTS)) as cluster:
-        for study in ("both_ways", "stripes"):
-            code = (
-                "import pandas as pd, rockflex as rf\n"
-                f"there = rf.run_study('{study}.toml', 'there-{study}', dask='{cluster.address}')\n"
-                f"pd.testing.assert_frame_equal(there, rf.run_study('{study}.toml'))\n"
-            )
-            run(here, "-c", code, site=site)
+        code = (
+            "import pandas as pd, rockflex as rf\n"
+            "for study in ('both_ways', 'stripes'):\n"
+            f"    there = rf.run_study(f'{{study}}.toml', f'there-{{study}}', dask='{cluster.address}')\n"
+            "    pd.testing.assert_frame_equal(there, rf.run_study(f'{study}.toml'))\n"
+        )
+        run(here, "-c", code, site=site)

@@ -12,6 +12,7 @@ from scipy import stats
 
 import rockflex as rf
 from rockflex.motion import Suite
+from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
 from rockflex.papers.silva_stojadinovic_2024.population import (
     PopulationStudy,
     draw_prototype,
@@ -168,6 +169,21 @@ def made_up(n=400, noise=0.05, seed=0, slopes=(0.9, 1.1)):
         | {name: np.arange(n) for name in ("pair", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion")}
         | {"pga": 1.0, "pgv": 1.0, "nominal_overturning_mdof": False, "nominal_overturning_2dof": False}
     )
+
+
+def test_measures_leave_out_pairs_that_could_not_be_solved():
+    frame = made_up().astype({"status_mdof": "string", "status_2dof": "string"})
+    frame.loc[:9, ["status_mdof", "status_2dof"]] = "no_uplift"
+    failed = frame.index % 7 == 0
+    frame.loc[failed, "status_2dof"] = pd.NA
+    frame.loc[failed, [name for name in frame if name.startswith("max_") and name.endswith("_2dof")]] = np.nan
+    found, expected = (
+        PairMeasures(pairs).of(np.arange(len(pairs))) for pairs in (frame, frame[~failed].reset_index(drop=True))
+    )
+    fitted = {name: value for name, value in expected.items() if name.startswith(("slope", "r2"))}
+    assert {name: found[name] for name in fitted} == pytest.approx(fitted, rel=1e-12, nan_ok=True)
+    assert found["largest rotation of 2DOF-S"] == expected["largest rotation of 2DOF-S"]
+    assert found["2DOF-S alone uplifts"] == 0.0
 
 
 def test_slopes_and_coefficients_are_what_their_definitions_say():

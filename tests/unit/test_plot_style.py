@@ -190,7 +190,8 @@ def written(figure, monkeypatch):
         if text.get_visible() and text.get_text().strip():
             found.append((text.get_text(), text.get_window_extent(renderer)))
 
-    figure.draw_without_rendering()  # the layout
+    with mpl.rc_context(figure.settings):
+        figure.get_layout_engine().execute(figure)
     figure.set_layout_engine("none")
     with monkeypatch.context() as patch:
         patch.setattr(Text, "draw", recorded)
@@ -212,7 +213,9 @@ def test_every_figure_is_here():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, monkeypatch):
-    figure = getattr(rf, name)(*given(name), size="column")
+    """In the theme of journals, whose letters are those of a column in any theme."""
+    with rf.figure_style("journal"):
+        figure = getattr(rf, name)(*given(name), size="column")
     assert figure.get_size_inches()[0] == 3.5
     texts = written(figure, monkeypatch)
     assert texts
@@ -220,6 +223,7 @@ def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, mo
     room = figure.bbox.padded(1.5)
     assert [text for text, box in texts if not (room.contains(*box.min) and room.contains(*box.max))] == []
     assert [(a, b) for (a, p), (b, q) in combinations(texts, 2) if overlaps(p, q)] == []
+    assert_words_stand_out(figure, bright=False)
 
 
 @pytest.mark.slow
@@ -291,21 +295,25 @@ def test_on_a_dark_background_black_turns_into_the_colour_of_the_text():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARGUMENTS)
-def test_in_every_theme_what_is_written_stands_out(name, given):
-    for theme, bright in (("dark", True), ("journal", False)):
-        with rf.figure_style(theme):
-            figure = getattr(rf, name)(*given(name))
-        figure.set_layout_engine("none")  # colours do not depend on it
-        figure.draw_without_rendering()
-        assert (sum(to_rgb(figure.get_facecolor())) < 0.5) == bright
-        grounds = {sum(to_rgb(axes.get_facecolor())) / 3.0 for axes in figure.axes if axes.patch.get_visible()}
-        assert all((ground < 0.5) == bright for ground in grounds)
-        ticks = [label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()]
-        words = [text for text in (*ticks, *figure.findobj(Text)) if text.get_text().strip() and text.get_visible()]
-        assert words
-        darkest = "#14181d" if bright else "#ffffff"
-        faint = {(text.get_text(), text.get_color()) for text in words if contrast(text.get_color(), darkest) < 1.9}
-        assert faint == set()
+def test_on_dark_ground_what_is_written_stands_out(name, given):
+    with rf.figure_style("dark"):
+        figure = getattr(rf, name)(*given(name))
+    figure.set_layout_engine("none")  # colours do not depend on it
+    figure.draw_without_rendering()
+    assert_words_stand_out(figure, bright=True)
+
+
+def assert_words_stand_out(figure, *, bright):
+    """On the ground of the theme, after the figure was drawn."""
+    assert (sum(to_rgb(figure.get_facecolor())) < 0.5) == bright
+    grounds = {sum(to_rgb(axes.get_facecolor())) / 3.0 for axes in figure.axes if axes.patch.get_visible()}
+    assert all((ground < 0.5) == bright for ground in grounds)
+    ticks = [label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()]
+    words = [text for text in (*ticks, *figure.findobj(Text)) if text.get_text().strip() and text.get_visible()]
+    assert words
+    ground = "#14181d" if bright else "#ffffff"
+    faint = {(text.get_text(), text.get_color()) for text in words if contrast(text.get_color(), ground) < 1.9}
+    assert faint == set()
 
 
 def contrast(one, other):

@@ -97,6 +97,7 @@ def test_sections_of_a_tower_at_both_ends(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")  # the page, whose words and numbers are read; the document has its pictures
 def test_a_document_of_word_has_the_same_contents(held, tmp_path):
     docx = pytest.importorskip("docx")
     path = rf.write_report(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from builders import frame_values
-from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, simulate
+from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, rigid_block, simulate
 from rockflex.models import GROUND, HEADER, Model
 from twins.controlled import ControlledTwin
 from twins.fine_step import simulate_fine
@@ -86,6 +86,21 @@ def test_a_peak_between_an_event_and_the_next_sample():
     events = np.concatenate((mine.uplift_times, mine.impact_times))
     assert np.any((events < when) & (events // 0.1 == when // 0.1))
     assert_same(mine, twin, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "record",
+    [
+        [0.5, 2.1, -2.5, 2.4, -0.1, -1.1, -1.1, -1.5, -0.3, 1.2],
+        [2.4, 1.4, 1.6, -1.4, -0.8, -1.1, -2.4, -0.6, 1.2, 0.3],
+    ],
+)
+def test_the_highest_excursion_may_be_shorter_than_two_samples(record):
+    """In an integrated model, whose steps end with the samples: at both ends of a step the block is nearly down."""
+    block, motion = rigid_block(slenderness=0.2, half_diagonal=5.0), GroundMotion(record, 0.05)
+    run, finer = (simulate(block, each, "rigid-C", "peaks") for each in (motion, motion.refined(5)))
+    assert 0.0 < run.max_rotation == pytest.approx(finer.max_rotation, rel=1e-9)
+    assert run.max_rotation == pytest.approx(simulate(block, motion, "rigid", "peaks").max_rotation, rel=1e-3)
 
 
 @pytest.mark.parametrize("excess", [1e-2, 1e-5, 1e-8])

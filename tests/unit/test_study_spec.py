@@ -72,6 +72,7 @@ def test_examples_load(name, kind, runs):
     assert isinstance(study, kind)
     plan = study.plan()
     assert plan.n_runs == runs
+    plan = study.model_copy(update={"runs_per_chunk": 1}).plan()  # the smallest chunks have the same columns
     assert plan.chunk(plan.n_chunks - 1).schema.equals(pickle.loads(pickle.dumps(plan)).chunk(0).schema)
 
 

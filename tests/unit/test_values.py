@@ -232,6 +232,14 @@ def test_made_of_the_same_is_the_same(kind, make):
     assert one == other
 
 
+@pytest.mark.parametrize("kind", VALUES | STUDIES)
+def test_no_field_can_be_set(kind):
+    if dataclasses.is_dataclass(kind):
+        assert kind.__dataclass_params__.frozen
+    else:
+        assert kind.model_config["frozen"]
+
+
 @pytest.mark.parametrize("make", [make for kind, make in VALUES.items() if kind not in UNHASHABLE])
 def test_equal_values_are_one_key(make):
     assert len({make(), make(), pickle.loads(pickle.dumps(make()))}) == 1

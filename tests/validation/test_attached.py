@@ -111,7 +111,7 @@ def rotations(motion, elements, lifts=True):
                 y,
                 "DOP853",
                 events=conditions,
-                max_step=dt / 16.0,
+                max_step=dt / 8.0,
                 rtol=1e-11,
                 atol=1e-13,
             )

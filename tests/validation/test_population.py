@@ -14,7 +14,7 @@ from rockflex.study import run_plan
 @pytest.fixture(scope="module")
 def found():
     suites = ["fema-p695-far-field", "fema-p695-near-field-no-pulse"]
-    pairs = run_plan(PopulationStudy(records={"suites": suites}, pairs=1000, seed=0).plan())
+    pairs = run_plan(PopulationStudy(records={"suites": suites}, pairs=600, seed=0).plan())
     assert pairs["error"].isna().all()
     return population_statistics(pairs)
 

@@ -36,7 +36,7 @@ from rockflex.papers.silva_stojadinovic_2024._section_3_3 import (
 
 pytestmark = pytest.mark.slow
 
-PAIRS = 120  # of a population, in place of the report's thousand
+PAIRS = 60  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
 MISSES = {
     "figure-3": {"friction that 2DOF-C needs, Eq. 22 as printed"},

@@ -69,6 +69,13 @@ def test_files_of_a_cloud(client, cloud, tmp_path, monkeypatch, runs) -> None:
     assert space["curves"]["2DOF-S"] == pytest.approx(fit.outcomes.initiation.probability(space["im"]))
 
 
+@pytest.mark.parametrize("what", ["nonsense", "report", "report-pdf", "comparison-pdf", "table-pdf"])
+def test_a_file_that_a_cloud_does_not_have(client, cloud, what) -> None:
+    status, answer = client.post(f"/api/study/cloud/{cloud}/{what}", {"state": client.state(cloud=CLOUD)})
+    assert status == 404
+    assert what in answer["errors"][""]
+
+
 def test_a_cloud_is_cancelled(client) -> None:
     state = client.state(cloud=CLOUD | {"models": ["MDOF-C-SI"], "scales": [1.0, 1.5, 2.0, 3.0, 5.0]})
     token = client.ask("/api/study/cloud", state)["token"]

@@ -14,6 +14,7 @@ cdef class Flow:
     cdef bint counts  # whether the states on which nothing depends are integrated
     cdef int place  # of the phase
     cdef bint known, told, entered, tried  # whether its first rates, its first rows, its conditions, and a whole step are
+    cdef int young  # steps that are left in which an output may rise above its peak and fall again within one
     cdef double step  # the next one, in samples
     cdef double part  # that which was tried
     cdef double reached  # the part of a sample that has passed where a march has stopped

@@ -27,6 +27,7 @@ WORK = cython.declare(cython.int, 12)  # samples that a step counts like
 STRETCH = cython.declare(cython.longlong, 1 << 22)  # of work, after which a march pauses
 OFTEN = cython.declare(cython.int, 64)  # steps in a sample without a look at Ctrl-C
 NEAR = cython.declare(cython.double, 0.75)  # of its peak: an output below that at both ends of a step does not reach it
+YOUNG = cython.declare(cython.int, 3)  # steps after a change, in which it may: one that has just begun may soon be over
 STRAY = cython.declare(cython.double, 0.2)  # of a cubic's curvature, by which a row may deviate from it
 VANISHES = cython.declare(cython.double, 1e-12)  # as in `series`
 BLUR = cython.declare(cython.double, 1e-10)  # of its scale: a condition that is not linear and zero
@@ -141,7 +142,7 @@ class Flow:
         self.exact, self.terms = np.zeros((1, 1), dtype=np.intc), TERMS
         self.straight = np.zeros((1, 1), dtype=np.intc)
         self.checked, self.slopes = np.zeros((1, 1), dtype=np.intc), np.zeros(2)
-        self.place, self.counts, self.part, self.reached = -1, False, 0.0, 0.0
+        self.place, self.counts, self.part, self.reached, self.young = -1, False, 0.0, 0.0, YOUNG
         self.begin()
 
     def know(self, phase, place):
@@ -183,6 +184,7 @@ class Flow:
     def forget(self):
         """Note that the state has changed, or the phase."""
         self.known = self.told = self.entered = self.tried = False
+        self.young = YOUNG
 
     def enter(self, place):
         """Note what the constant states add to the conditions of a phase."""
@@ -240,6 +242,7 @@ class Flow:
         """Move the state to the end of the step."""
         k: cython.int
         self.told = self.tried = False
+        self.young = max(self.young - 1, 0)
         for k in range(self.n):
             self.rows[START, k], self.rows[FIRST, k] = self.rows[END, k], self.rows[LAST, k]
         for k in range(self.phases.moving(self.place)):
@@ -392,9 +395,8 @@ class Flow:
         sloped: cython.bint = False
         length: cython.double = self.part * self.h
         for j in range(self.outputs):
-            if (
-                self.straight[place, j] == 0
-                or max(fabs(self.found[OUTS, j]), fabs(self.found[ENDS, j])) <= NEAR * self.high[j]
+            if self.straight[place, j] == 0 or (
+                max(fabs(self.found[OUTS, j]), fabs(self.found[ENDS, j])) <= NEAR * self.high[j] and self.young == 0
             ):
                 continue
             if not sloped:
@@ -426,7 +428,7 @@ class Flow:
             first, last = self.found[OUTS, j], self.found[ENDS, j]
             most = max(self.counted(j, first), self.counted(j, last))
             low = max(fabs(self.high[j]), self.least[place, 1 + k])
-            if most <= self.high[j] - (1.0 - NEAR) * low:
+            if most <= self.high[j] - (1.0 - NEAR) * low and self.young == 0:
                 continue
             if not told:
                 self.look_within(place, EARLY, EARLY_AT, EARLY_OUTS)

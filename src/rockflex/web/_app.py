@@ -28,7 +28,7 @@ from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
-from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
+from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file_maker
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
@@ -195,11 +195,11 @@ class PageServer:
             return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
-        """Start to make the table or the figure of a study."""
+        """Start to make the table, the figure or the report of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return self._making(lambda _: study_file(PAGES[kind], job, state, what), state)
+        return self._making(study_file_maker(PAGES[kind], job, state, what), state)
 
     async def make(self, request: Request) -> Response:
         """Start to make a file of the results on the page."""

@@ -126,15 +126,19 @@ def file_maker(state: PageState, what: str, uploads: UploadedRecords) -> Callabl
     """
     if what == "animation":
         return lambda progress: animation_file(state, uploads, progress)
-    maker = _MAKERS.get(REPORTS_AS_PDF.get(what, what)) or _maker_of_study_file(what)
+    maker = _MAKERS.get(REPORTS_AS_PDF.get(what, what)) or _maker_of_study_input(what)
     if maker is None:
-        raise Refusal(f"There is no file named {what[:40]!r}.", 404)
+        raise _unknown_file(what)
 
     def make(_: Progress) -> tuple[str, bytes]:
         name, content = maker(state, uploads)
         return _printed(what, name, content if isinstance(content, bytes) else content.encode())
 
     return make
+
+
+def _unknown_file(what: str) -> Refusal:
+    return Refusal(f"There is no file named {what[:40]!r}.", 404)
 
 
 def _printed(what: str, name: str, content: bytes) -> tuple[str, bytes]:
@@ -218,8 +222,8 @@ def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[s
     return "response.py", response_script(state, name)
 
 
-def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tuple[str, str | bytes]] | None:
-    """Return the maker of a file of a study, such as "cloud-study" or "design-python"; None if there is none."""
+def _maker_of_study_input(what: str) -> Callable[[PageState, UploadedRecords], tuple[str, str | bytes]] | None:
+    """Return the maker of a file from which a study is run, such as "cloud-study" or "design-python"; None if none."""
     kind, _, form = what.partition("-")
     page = PAGES.get(kind)
     if page is None:
@@ -240,16 +244,30 @@ def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tu
     return {"study": toml if kind in KINDS else None, "python": python, "records": records}.get(form)
 
 
-def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tuple[str, bytes]:
-    """Return the name and the content of the table, the figure or the report of a study, from its runs so far."""
-    if what == "table":
-        return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
-    from rockflex.plot import figure_as_svg
+def study_file_maker(
+    page: StudyPage, job: RunsJob, state: PageState, what: str
+) -> Callable[[Progress], tuple[str, bytes]]:
+    """Return the function that makes a file of a study from its runs so far, as `file_maker` does.
 
-    if REPORTS_AS_PDF.get(what, what) == "report" and page.report is not None:
-        return _printed(what, "report.html", page.report(job, state).encode())
-    with errors_as_refusals(""):
-        return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()
+    It is the ``"table"``, the ``"figure"`` or, of a study that has one, the ``"report"``, also with ``"-pdf"``.
+    """
+
+    def table(_: Progress) -> tuple[str, bytes]:
+        return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
+
+    def figure(_: Progress) -> tuple[str, bytes]:
+        from rockflex.plot import figure_as_svg
+
+        with errors_as_refusals(""):
+            return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()
+
+    makers = {"table": table, "figure": figure}
+    if (write := page.report) is not None:
+        makers["report"] = lambda _: _printed(what, "report.html", write(job, state).encode())
+    maker = makers.get(REPORTS_AS_PDF.get(what, what))
+    if maker is None:
+        raise _unknown_file(what)
+    return maker
 
 
 _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {

@@ -11,8 +11,7 @@ tested specimens.
 
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
-from rockflex.papers.silva_stojadinovic_2024._inputs import SEED, SEEDS, PaperRecords
-from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
+from rockflex.papers.silva_stojadinovic_2024._inputs import SEED, SEEDS, PaperRecords, Piece
 from rockflex.papers.silva_stojadinovic_2024._targets import (
     TARGETS,
     finish_target,

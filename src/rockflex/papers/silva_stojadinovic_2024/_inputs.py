@@ -1,6 +1,7 @@
-"""Records and structures of the paper, and the records used instead of those that are not available."""
+"""Records and structures of the paper, the records used instead, and the pieces of the work that is done on them."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -125,3 +126,30 @@ class PaperRecords:
             else f"{count} components of FEMA P-695, far field and near field without pulses"
         )
         return f"Sections 3.2 to 3.4: {studies}, in place of the paper's 210. Section 4: El Centro 1940, north-south."
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Runs that several targets share, or that take long, computed anywhere and kept as a table.
+
+    It is number `number` of `count` in a group whose tables have the same columns. `make` is a function that another
+    process can import, called with the records and the number; `cost` is the time that it takes on one core of a
+    machine of 2024, in s, by which pieces and targets are weighed against each other.
+    """
+
+    group: str
+    number: int
+    count: int
+    cost: float
+    make: "Callable[[PaperRecords, int], pd.DataFrame]"
+
+    @property
+    def name(self) -> str:
+        """Its name among the tables."""
+        return f"{self.group} {self.number + 1} of {self.count}"
+
+    def table(self, records: PaperRecords) -> "pd.DataFrame":
+        """Return the table, computed when it is first asked for."""
+        if self.name not in records.tables:
+            records.tables[self.name] = self.make(records, self.number)
+        return records.tables[self.name]

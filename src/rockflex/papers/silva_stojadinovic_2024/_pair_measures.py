@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.papers.silva_stojadinovic_2024.population._statistics import PairTerms
+from rockflex.papers.silva_stojadinovic_2024.population._statistics import PairTerms, has_status, outcome_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,17 +25,14 @@ class PairMeasures:
     """
 
     def __init__(self, pairs: "pd.DataFrame") -> None:
-        every, one = (pairs[f"status_{model}"].astype(object).to_numpy() for model in ("mdof", "2dof"))
-        self._solved: Bools = pairs["status_mdof"].notna().to_numpy() & pairs["status_2dof"].notna().to_numpy()
-        self._resting: Bools = every == "no_uplift"
-        self._rocking: Bools = self._solved & (every == "rocking") & (one != "overturned")
+        self._solved, self._resting, self._rocking = outcome_rows(pairs)
         self._conditions: dict[str, Bools] = {
-            "no uplift": self._resting,
-            "rocking": every == "rocking",
-            "overturned": every == "overturned",
+            "no uplift": has_status(pairs, "mdof", "no_uplift"),
+            "rocking": has_status(pairs, "mdof", "rocking"),
+            "overturned": has_status(pairs, "mdof", "overturned"),
             "beyond the limit, MDOF-S": pairs["nominal_overturning_mdof"].to_numpy(dtype=bool),
             "beyond the limit, 2DOF-S": pairs["nominal_overturning_2dof"].to_numpy(dtype=bool),
-            "2DOF-S alone uplifts": self._resting & (one != "no_uplift"),
+            "2DOF-S alone uplifts": self._resting & ~has_status(pairs, "2dof", "no_uplift"),
         }
         self._drawn: dict[str, Array] = {name: pairs[name].to_numpy(dtype=float) for name in DRAWN}
         tops, rotations = (

@@ -12,9 +12,9 @@ import rockflex as rf
 from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval, bootstrap_intervals
-from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, table_1_frame
-from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
+from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, Piece, table_1_frame
 from rockflex.report import PublishedNumber, Remark, ReproducedResult
+from rockflex.study import record_groups
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -419,19 +419,14 @@ def _friction_of_structure(records: PaperRecords, number: int) -> "pd.DataFrame"
     import pandas as pd
 
     suite, name = records.suite[::EVERY], list(STRUCTURES)[number]
-    groups = (
-        rf.run_cloud(table_1_frame(name), suite, MODEL, workers=records.workers)
-        .set_index("motion")["group"]
-        .astype(str)
-        .to_dict()
-    )
+    grouped = list(zip(suite, record_groups(suite), strict=True))
     rows: list[dict[str, str | float]] = []
     for model in MODELS:
-        for motion in suite:
+        for motion, group in grouped:
             response = rf.simulate(table_1_frame(name), motion, model)
             if response.status == "rocking":
                 printed = response.required_friction_excluding_impacts(0.0, printed=True)
-                row = {"model": model, "structure": name, "group": groups[motion.name]}
+                row = {"model": model, "structure": name, "group": group}
                 rows.append(row | {"printed": printed, "mended": response.required_friction})
     return pd.DataFrame(rows, columns=["model", "structure", "group", "printed", "mended"])
 

@@ -9,9 +9,8 @@ import numpy as np
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval
-from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords, Piece
 from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
-from rockflex.papers.silva_stojadinovic_2024._pieces import Piece
 from rockflex.report import Remark, ReproducedResult
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+AGREEING_QUANTITIES = {"no_uplift": ("top_displacement",), "rocking": ("top_displacement", "rotation")}
 MIN_PAIRS = 3  # pairs for a comparison
 N_SUMS = 6  # per comparison, from which slope and R² follow
 OUTLIER_COLUMNS = (
@@ -84,16 +85,26 @@ class OutcomeGroups(NamedTuple):
 
 def outcome_groups(pairs: "pd.DataFrame") -> OutcomeGroups:
     """Divide pairs by their outcome, according to MDOF-S."""
-    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
-    rocking = (solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")
-    return OutcomeGroups(solved, solved[solved["status_mdof"] == "no_uplift"], solved[rocking])
+    return OutcomeGroups(*(pairs[members] for members in outcome_rows(pairs)))
+
+
+def outcome_rows(pairs: "pd.DataFrame") -> tuple[Bools, Bools, Bools]:
+    """Return which rows belong to each of the `OutcomeGroups`."""
+    solved = (pairs["status_mdof"].notna() & pairs["status_2dof"].notna()).to_numpy(dtype=bool)
+    resting, rocking = (solved & has_status(pairs, "mdof", status) for status in ("no_uplift", "rocking"))
+    return solved, resting, rocking & ~has_status(pairs, "2dof", "overturned")
+
+
+def has_status(pairs: "pd.DataFrame", model: str, status: str) -> Bools:
+    """Return where ``"mdof"`` or ``"2dof"`` ended so; not where it could not be solved, in which case it has none."""
+    return pairs[f"status_{model}"].isin([status]).to_numpy(dtype=bool)
 
 
 def slope_and_r2(x: Array, y: Array) -> tuple[float, float]:
     """Return c1 of y = c1 x by least squares, and R² of the line y = x; NaN for too few pairs."""
     if x.size < MIN_PAIRS:
         return np.nan, np.nan
-    slope, r2 = _slopes_and_r2(_regression_terms(x, y).sum(axis=0)[None])[0].tolist()
+    slope, r2 = _slopes_and_r2(_regression_terms(x, y, np.ones(x.size, dtype=bool)).sum(axis=0)[None])[0].tolist()
     return slope, r2
 
 
@@ -110,11 +121,10 @@ class PairTerms(NamedTuple):
     @classmethod
     def of(cls, pairs: "pd.DataFrame") -> "PairTerms":
         """Compute the terms, which are zero where a pair does not belong to a comparison."""
-        groups = outcome_groups(pairs)
-        resting, rocking = (pairs.index.isin(group.index) for group in (groups.resting, groups.rocking))
+        _, resting, rocking = outcome_rows(pairs)
         compared = [
-            *_agreement_comparisons("no_uplift", pairs, ("top_displacement",), resting),
-            *_agreement_comparisons("rocking", pairs, ("top_displacement", "rotation"), rocking),
+            *_agreement_comparisons("no_uplift", pairs, resting),
+            *_agreement_comparisons("rocking", pairs, rocking),
             *_combination_comparisons(pairs, rocking),
         ]
         names = [(each.group, each.quantity, each.behaviour, each.estimate) for each in compared]
@@ -128,6 +138,8 @@ class PairTerms(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _PopulationComparison:
+    """An estimate x of y in every pair, and which pairs are compared: some or all of those of the group."""
+
     group: str
     quantity: str
     behaviour: str
@@ -178,67 +190,58 @@ def population_statistics(
     checked_in_range("confidence", confidence, 1e-9, 1.0)
     resamples, start = checked_whole_number("n_resamples", n_resamples, 1), checked_whole_number("seed", seed, 0)
     shown = checked_whole_number("n_outliers", n_outliers, 0)
-    solved, resting, rocking = outcome_groups(pairs)
-    if not len(solved):
+    solved, resting, rocking = outcome_rows(pairs)
+    if not solved.any():
         raise InputError(
             "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
         )
     import pandas as pd
 
-    agreeing, combining = list[dict[str, object]](), _combination_comparisons(rocking)
-    for group, frame, quantities in (
-        ("no_uplift", resting, ("top_displacement",)),
-        ("rocking", rocking, ("top_displacement", "rotation")),
-    ):
-        compared = _agreement_comparisons(group, frame, quantities)
-        agreeing += _comparison_rows(compared, confidence, resamples, start)
-    combination = pd.DataFrame(_comparison_rows(combining, confidence, resamples, start))
+    bootstrap = confidence, resamples, start
+    agreeing = [
+        row
+        for group, members in (("no_uplift", resting), ("rocking", rocking))
+        for row in _comparison_rows(_agreement_comparisons(group, pairs, members), members, *bootstrap)
+    ]
+    combining = _comparison_rows(_combination_comparisons(pairs, rocking), rocking, *bootstrap)
     counts = pd.crosstab(
-        pd.Categorical(solved["status_mdof"], STATUSES),
-        pd.Categorical(solved["status_2dof"], STATUSES),
+        pd.Categorical(pairs["status_mdof"][solved], STATUSES),
+        pd.Categorical(pairs["status_2dof"][solved], STATUSES),
         rownames=["MDOF-S"],
         colnames=["2DOF-S"],
         dropna=False,
     )
     return PopulationStatistics(
         outcomes=counts,
-        n_failed=len(pairs) - len(solved),
-        n_nominal_mdof=int(solved["nominal_overturning_mdof"].sum()),
-        n_nominal_2dof=int(solved["nominal_overturning_2dof"].sum()),
+        n_failed=int((~solved).sum()),
+        n_nominal_mdof=int(pairs["nominal_overturning_mdof"][solved].sum()),
+        n_nominal_2dof=int(pairs["nominal_overturning_2dof"][solved].sum()),
         agreement=pd.DataFrame(agreeing),
-        combination=combination.drop(columns=["group", "behaviour"]),
-        outliers=_outlying_pairs(solved, rocking, shown),
+        combination=pd.DataFrame(combining).drop(columns=["group", "behaviour"]),
+        outliers=_outlying_pairs(pairs[solved], rocking[solved], shown),
     )
 
 
-def _agreement_comparisons(
-    group: str, frame: "pd.DataFrame", quantities: tuple[str, ...], members: Bools | None = None
-) -> list[_PopulationComparison]:
-    """Compare the models; `members` are the rows of the group, by default all."""
-    everything = np.ones(len(frame), dtype=bool) if members is None else members
-    shear = (frame["behaviour"] == "shear").to_numpy(dtype=bool)
+def _agreement_comparisons(group: str, pairs: "pd.DataFrame", members: Bools) -> list[_PopulationComparison]:
+    """Compare the models in a group; `members` are its rows among the pairs."""
+    shear = (pairs["behaviour"] == "shear").to_numpy(dtype=bool)
+    among = {"all": members, "shear": members & shear, "flexure": members & ~shear}
     found: list[_PopulationComparison] = []
-    for quantity in quantities:
-        x, y = (frame[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
-        for behaviour, kept in (
-            ("all", everything),
-            ("shear", everything & shear),
-            ("flexure", everything & ~shear),
-        ):
-            found.append(_PopulationComparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
+    for quantity in AGREEING_QUANTITIES[group]:
+        x, y = (pairs[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
+        found += [_PopulationComparison(group, quantity, name, "2DOF-S", x, y, kept) for name, kept in among.items()]
     return found
 
 
-def _combination_comparisons(frame: "pd.DataFrame", members: Bools | None = None) -> list[_PopulationComparison]:
-    everything = np.ones(len(frame), dtype=bool) if members is None else members
+def _combination_comparisons(pairs: "pd.DataFrame", members: Bools) -> list[_PopulationComparison]:
     found: list[_PopulationComparison] = []
 
     def compare(quantity: str, estimate: str, x: str, y: str, unit: Array) -> None:
-        of_x, of_y = (frame[name].to_numpy(dtype=float) / unit for name in (x, y))
-        found.append(_PopulationComparison("rocking", quantity, "all", estimate, of_x, of_y, everything))
+        of_x, of_y = (pairs[name].to_numpy(dtype=float) / unit for name in (x, y))
+        found.append(_PopulationComparison("rocking", quantity, "all", estimate, of_x, of_y, members))
 
-    one = np.ones(len(frame))
-    weight, moment = frame["structure_mass"].to_numpy(dtype=float) * GRAVITY, frame["l0r_g"].to_numpy(dtype=float)
+    one = np.ones(len(pairs))
+    weight, moment = pairs["structure_mass"].to_numpy(dtype=float) * GRAVITY, pairs["l0r_g"].to_numpy(dtype=float)
     compare("second_displacement", "S_d(ω_2)", "sd_2", "max_second_displacement_mdof", one)
     for quantity, unit in (("top_displacement", one), ("base_shear", weight), ("base_moment", moment)):
         compare(quantity, "2DOF-S", f"max_{quantity}_2dof", f"max_{quantity}_mdof", unit)
@@ -247,10 +250,10 @@ def _combination_comparisons(frame: "pd.DataFrame", members: Bools | None = None
 
 
 def _comparison_rows(
-    comparisons: list[_PopulationComparison], confidence: float, resamples: int, seed: int
+    comparisons: list[_PopulationComparison], members: Bools, confidence: float, resamples: int, seed: int
 ) -> list[dict[str, object]]:
-    """Return the rows of comparisons over the same pairs, which are resampled together."""
-    terms = np.column_stack([_regression_terms(each.x, each.y, each.kept) for each in comparisons])
+    """Return the rows of comparisons of one group, whose members are resampled together."""
+    terms = np.column_stack([_regression_terms(each.x, each.y, each.kept) for each in comparisons])[members]
     n = terms.shape[0]
     rng = np.random.Generator(np.random.Philox(seed))
     drawn = np.full((resamples, len(comparisons), 2), np.nan)
@@ -286,12 +289,14 @@ def _comparison_rows(
     return rows
 
 
-def _regression_terms(x: Array, y: Array, kept: Bools | None = None) -> Array:
-    """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
-    among = np.ones(x.size, dtype=bool) if kept is None else kept
-    away = y - (float(y[among].mean()) if among.any() else 0.0)
+def _regression_terms(x: Array, y: Array, kept: Bools) -> Array:
+    """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of y, and 1.
+
+    They are zero where a pair is not kept; the values of one that was not solved are NaN.
+    """
+    away = y - (float(y[kept].mean()) if kept.any() else 0.0)
     terms = np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x)))
-    return np.where(among[:, None], terms, 0.0)  # NaN where a pair was not solved
+    return np.where(kept[:, None], terms, 0.0)
 
 
 def _slopes_and_r2(sums: Array) -> Array:
@@ -301,9 +306,9 @@ def _slopes_and_r2(sums: Array) -> Array:
         return np.column_stack((xy / xx, 1.0 - misses / (square - away**2 / count)))
 
 
-def _outlying_pairs(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
+def _outlying_pairs(solved: "pd.DataFrame", rocking: Bools, count: int) -> "pd.DataFrame":
     misses = (solved["max_rotation_mdof"] - solved["max_rotation_2dof"]).abs()
-    worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(OUTLIER_COLUMNS)]
-    total = float((misses[rocking.index] ** 2).sum())
-    share = (misses**2 / total).where(misses.index.isin(rocking.index)) if total > 0.0 else misses * np.nan
-    return worst.assign(difference=misses[worst.index], share=share[worst.index]).reset_index(drop=True)
+    total = float((misses[rocking] ** 2).sum())
+    share = (misses**2 / total).where(rocking) if total > 0.0 else misses * np.nan
+    table = solved[list(OUTLIER_COLUMNS)].assign(difference=misses, share=share)
+    return table.sort_values("difference", ascending=False, kind="stable", ignore_index=True)[:count]
