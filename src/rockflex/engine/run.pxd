@@ -56,6 +56,9 @@ cdef class Run:
 
     cdef void begin(self) noexcept nogil
     cdef int enter(self, key) except -1
+    cdef int place_of(self, key) except -1
+    cdef int meet_first(self, Batch batch) except -1
+    cdef refuse_step(self, int place)
     cdef int load(self, int place) except -1 nogil
     cdef int renew(self, int place) except -1
     cdef int prepare(self, key, int place) except -1

@@ -184,12 +184,15 @@ class Run:
 
     def enter(self, key):
         """Return the place of the phase of a key."""
-        failures.check_key(key)
-        place: cython.int = self.places.get(key, -1)
-        if place < 0:
-            place = self.prepare(key, len(self.met))
+        place: cython.int = self.place_of(key)
         self.load(place)
         return place
+
+    def place_of(self, key):
+        """Return the place of the phase of a key, and prepare it if it has not been met."""
+        failures.check_key(key)
+        place: cython.int = self.places.get(key, -1)
+        return self.prepare(key, len(self.met)) if place < 0 else place
 
     def load(self, place):
         """Use a phase that has been met, and prepare it if it was forgotten."""
@@ -198,6 +201,9 @@ class Run:
         if not self.phases.knows(place, self.shakes):
             with cython.gil:
                 self.renew(place)
+        if self.phases.halvings(place) < 0:  # of this system; others of the stack may have such a phase
+            with cython.gil:
+                self.refuse_step(place)
         return 0
 
     def renew(self, place):
@@ -264,8 +270,7 @@ class Run:
             As `advance`, for the run `batch.place`; with 1 added to that, the next call goes on with the others.
         """
         number: cython.int
-        for number, key in enumerate(batch.keys):
-            batch.first[number] = self.enter(key)
+        batch.first[:] = -1
         for number, name in enumerate(batch.names):
             batch.kinds[number] = self.journal.kind(name)
         with cython.nogil:
@@ -281,6 +286,9 @@ class Run:
         while batch.place < batch.count:
             run = batch.place
             self.choose(batch.which[run])
+            if batch.first[batch.phase[run]] < 0:
+                with cython.gil:
+                    self.meet_first(batch)
             self.first = batch.first[batch.phase[run]]
             for i in range(self.n):
                 self.start[i] = batch.starts[run, i]
@@ -498,6 +506,16 @@ class Run:
         return 0
 
     # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it when it ends.
+
+    def meet_first(self, batch):
+        """Note the place of the first phase of the present run of a batch."""
+        number: cython.int = batch.phase[batch.place]
+        batch.first[number] = self.place_of(batch.keys[number])
+        return 0
+
+    def refuse_step(self, place):
+        """Raise the error of a motion that overflows within a step."""
+        raise failures.endless(*self.met[place], self.which, self.h)
 
     def meet(self, event, outcome):
         """Return the place of the phase that follows an outcome for the first time."""

@@ -248,6 +248,8 @@ class Engine:
 
     def of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
+        if not places.size:  # all runs were refused
+            return np.zeros((0, self.model.layout.size))
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
         if self.model.integrated:
