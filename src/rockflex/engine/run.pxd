@@ -10,7 +10,7 @@ cdef class Run:
     cdef readonly object system
     cdef readonly double h
     cdef readonly int which
-    cdef readonly long long size
+    cdef long long phase_bytes  # memory of the phases
     cdef public long long memory
     cdef readonly bint ended
     cdef public object watch

@@ -66,6 +66,11 @@ class Mirror(NamedTuple):
             return 0
         return 1 if np.array_equal(c, self.c) else -1 if np.array_equal(c, -self.c) else 0
 
+    @property
+    def nbytes(self) -> int:
+        """Memory beside that of the phase, in bytes."""
+        return sum(each.nbytes for each in (self.step, *self.bounds))
+
 
 @np.errstate(over="ignore", invalid="ignore")
 def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
