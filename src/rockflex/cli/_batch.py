@@ -11,7 +11,7 @@ from typing import Any
 
 import typer
 
-from rockflex._errors import SolverError
+from rockflex._errors import InputError, SolverError
 from rockflex._schema import BoucWenSchema, FrameFlags, InitialStateSchema
 from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
@@ -28,7 +28,6 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
 from rockflex.response import BY_STORY, PEAKS, Response, friction_coefficient, story_results
-from rockflex.solve import WorkLimitError
 from rockflex.study import (
     PreparedCase,
     RunOptions,
@@ -85,15 +84,18 @@ class BatchRun:
     model: str
     response: Response | None = None
     """With its history only if the batch has histories."""
-    error: str | None = None
-    refused: bool = False
-    """Whether it was not started, because it would exceed the work limit."""
+    failure: InputError | SolverError | None = None
     run_time: float | None = None
     """Seconds; None where runs were shared among threads."""
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and the time at which sliding would start, by name; empty unless requested."""
     elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
     """Peaks of each element, its energy of a run with a history, and what is left of each story, by name."""
+
+    @property
+    def error(self) -> str | None:
+        """The message of the failure."""
+        return None if self.failure is None else str(self.failure)
 
     @cached_property
     def peaks(self) -> dict[str, Any]:
@@ -140,7 +142,8 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
     Raises
     ------
     InputError
-        If a value of the batch is out of range, or every run would exceed the work limit.
+        If a value of the batch is out of range, or every run is refused: it would exceed the work limit, the initial
+        state does not fit the model, or the time step is too long.
     SolverError
         If no run could be solved.
     """
@@ -154,11 +157,11 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
             batch.workers if many else batch.workers or 1,
             lambda _: None if advance is None else advance(1),
         )
-    failed = [found for found in runs if found.error is not None]
-    if len(failed) == len(runs):
-        first = failed[0]
-        if all(found.refused for found in runs):
-            raise WorkLimitError(str(first.error))
+    failures = [found.failure for found in runs if found.failure is not None]
+    if len(failures) == len(runs):
+        first = runs[0]
+        if isinstance(failures[0], InputError) and all(isinstance(each, InputError) for each in failures):
+            raise failures[0]
         raise SolverError(
             f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
         )
@@ -172,9 +175,9 @@ def _run_one_of_batch(
     start = perf_counter()
     try:
         response = case.run(motion, scale)
-    except (SolverError, WorkLimitError) as error:
+    except (InputError, SolverError) as error:
         lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING)
-        return replace(made, error=str(error), refused=isinstance(error, WorkLimitError), friction=lost)
+        return replace(made, failure=error, friction=lost)
     elapsed = perf_counter() - start if timed else None
     friction: dict[str, float | None] = {}
     if batch.friction is not None:

@@ -2,8 +2,10 @@
 
 from typing import Any
 
+import numpy as np
+
 from rockflex._errors import InputError, SolverError
-from rockflex.engine.system import Key, LinearPhase, NonlinearPhase
+from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError
 
 
 def missing_vector_level_error(level: str) -> ImportError:
@@ -30,6 +32,12 @@ def broken_off_run_error() -> SolverError:
 def growth(key: Key, time: float) -> SolverError:
     """The motion overflows."""
     return SolverError(f"The motion in the phase {key!r} grows without bound before t = {time:.9g}.")
+
+
+def endless(key: Key, phase: LinearPhase, which: int, h: float) -> StepTooLongError:
+    """The motion of a system overflows within a time step."""
+    words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
+    return StepTooLongError(words, float(np.linalg.eigvals(phase.of(which).A).real.max()))
 
 
 def limit(samples: int) -> SolverError:

@@ -11,8 +11,7 @@ class Journal:
 
     def __init__(self, n):
         self.n = n
-        self.times, self.exits = np.zeros(64), np.zeros((64, 2), dtype=np.intc)
-        self.rows, self.places = np.zeros((0, 3 + n)), np.zeros(0, dtype=np.intc)
+        self.clear()
         self.often, self.kinds, self.names = np.zeros(16, dtype=np.intc), np.zeros((4, 4), dtype=np.intc), {}
         self.begin()
 
@@ -35,6 +34,17 @@ class Journal:
         """Begin anew."""
         self.n_events = self.n_nodes = 0
         self.often[:] = 0
+
+    @property
+    def size(self):
+        """Memory of events and history, bytes."""
+        return self.rows.nbytes + self.places.nbytes + self.times.nbytes + self.exits.nbytes
+
+    def clear(self):
+        """Forget all, and give back the room."""
+        self.n_events = self.n_nodes = 0
+        self.times, self.exits = np.zeros(64), np.zeros((64, 2), dtype=np.intc)
+        self.rows, self.places = np.zeros((0, 3 + self.n)), np.zeros(0, dtype=np.intc)
 
     def wants(self, a, v):
         """Whether the history does not yet end at an acceleration."""

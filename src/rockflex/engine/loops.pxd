@@ -84,7 +84,7 @@ cdef extern from "march.h" nogil:
     ctypedef struct Loops:
         const char *level
         int group
-        size_t workspace
+        size_t (*workspace)(int rows) noexcept nogil
         void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
         int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
@@ -105,8 +105,10 @@ cdef extern from "march.h" nogil:
 cdef class Peaks:
     cdef Log log
     cdef double[::1] high_, when_, seen
+    cdef size_t space  # of the workspace, bytes
     cdef readonly double[:, ::1] candidates
 
+    cdef int widen(self, int rows) except -1
     cdef void begin(self, double[::1] one_sided) noexcept nogil
     cdef void pass_by(self, double samples) noexcept nogil
     cdef int looks(self) noexcept nogil

@@ -42,13 +42,26 @@ class Peaks:
         self.log.high, self.log.when = cython.address(self.high_[0]), cython.address(self.when_[0])
         self.log.seen, self.log.candidates = cython.address(self.seen[0]), cython.address(self.candidates[0, 0])
         self.log.room, self.log.width = room, 2 + states + outputs
-        self.log.workspace = malloc(LOOPS.workspace)
-        if self.log.workspace == cython.NULL:
-            raise MemoryError
         self.begin(one_sided)
 
     def __dealloc__(self):
         free(self.log.workspace)
+
+    def widen(self, rows):
+        """Make room for phases with so many outputs and conditions."""
+        space: cython.size_t = LOOPS.workspace(rows)
+        if space > self.space:
+            free(self.log.workspace)
+            self.log.workspace, self.space = malloc(space), space
+            if self.log.workspace == cython.NULL:
+                self.space = 0
+                raise MemoryError
+        return 0
+
+    @property
+    def size(self):
+        """Memory of the room, bytes."""
+        return self.space + self.candidates.nbytes + self.seen.nbytes
 
     def begin(self, one_sided):
         """Begin anew."""

@@ -35,6 +35,14 @@ class Peaks:
         self.candidates = np.zeros((room + 1, 2 + states + one_sided.size))
         self.begin(one_sided)
 
+    def widen(self, rows: int) -> None:
+        """Make room for phases with so many outputs and conditions."""
+
+    @property
+    def size(self) -> int:
+        """Memory of the room, bytes."""
+        return self.candidates.nbytes
+
     def begin(self, one_sided: Array) -> None:
         """Begin anew."""
         self.high[:], self.when[:] = np.where(one_sided > 0.0, -np.inf, 0.0), 0.0

@@ -21,7 +21,6 @@
 #define TEXT(x) TEXT_(x)
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
-#define FLAT (AHEAD * MAX_ROWS) /* rows of the samples of one product, one sample after another */
 #define WIDE (MAX_STATES + MAX_ROWS)
 #define MORE (2 * MAX_STATES + 3) /* columns of a product under vertical acceleration, at most */
 
@@ -461,8 +460,13 @@ enum { MOVES = 2 * MAX_STATES + 4 + 5 * MAX_FED };
 
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
     States states;
-    double arena[15 * FLAT + 8 * MAX_ROWS + MAX_STATES + MOVES + 32 * LINE]; /* what `march` takes, at most */
+    double arena[];
 } Workspace;
+
+/* The memory of what `march` takes, at most, in phases of so many rows. */
+static size_t workspace(int rows) {
+    return sizeof(Workspace) + (15 * up8(AHEAD * rows) + 8 * up8(rows) + MAX_STATES + MOVES + 32 * LINE) * sizeof(double);
+}
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
    first in which a condition may fail. */
@@ -590,5 +594,5 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
 
 #include "steps.h"
 
-const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread,
+const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, amounts, spread,
                                             reach, complete, magnitudes, march, attempt, look, within, bend};

@@ -74,7 +74,7 @@ typedef struct {
     double *seen;            /* rows where the march has stopped for want of room */
     int resumes;             /* whether it has: it goes on from there with the same bits */
     int count, room, width;  /* rows of candidates, at most so many; doubles in a row */
-    void *workspace;         /* of `Loops.workspace` bytes */
+    void *workspace;         /* of `Loops.workspace` bytes for the phase with most rows */
     int looks;               /* whether the march has stopped before a sample in which a condition may fail */
     long long work;          /* samples and expansions so far */
 } Log;
@@ -113,7 +113,7 @@ typedef void (*Rates)(void *field, const double *y, double a, double a_v, double
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
-    size_t workspace;
+    size_t (*workspace)(int rows); /* bytes */
     void (*product)(int columns, int rows, const double *table, const double *x, double *out);
     int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width,
                   double *series);

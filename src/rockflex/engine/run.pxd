@@ -10,7 +10,7 @@ cdef class Run:
     cdef readonly object system
     cdef readonly double h
     cdef readonly int which
-    cdef readonly long long size
+    cdef long long phase_bytes  # memory of the phases
     cdef public long long memory
     cdef readonly bint ended
     cdef public object watch
@@ -56,6 +56,9 @@ cdef class Run:
 
     cdef void begin(self) noexcept nogil
     cdef int enter(self, key) except -1
+    cdef int place_of(self, key) except -1
+    cdef int meet_first(self, Batch batch) except -1
+    cdef refuse_step(self, int place)
     cdef int load(self, int place) except -1 nogil
     cdef int renew(self, int place) except -1
     cdef int prepare(self, key, int place) except -1

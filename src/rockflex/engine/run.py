@@ -40,6 +40,7 @@ CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a close
 STRETCH = cython.declare(cython.int, 1 << 25)  # samples, or what counts like them, without a look at Ctrl-C: some
 PER_SAMPLE = cython.declare(cython.int, 64)  # 50 ms; divided by this and by n²/8
 MEMORY = cython.declare(cython.longlong, 64_000_000)  # bytes of tables in a run, if it does not say otherwise
+KEPT = cython.declare(cython.longlong, 1_000_000)  # bytes of room that are kept for the next history
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 
 
@@ -59,9 +60,10 @@ class Run:
     Attributes
     ----------
     size
-        Memory of the tables of phases, bytes.
+        Memory that the run holds, in bytes: phases and their tables, a history, and room.
     memory
-        Its limit: beyond it the phases that were not used for longest are forgotten, and prepared again if met again.
+        Limit of the memory of the phases: beyond it those that were not used for longest are forgotten, and prepared
+        again if met again.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
@@ -92,7 +94,14 @@ class Run:
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
-        self.size, self.failed, self.first, self.pause, self.fading, self.shakes = 0, False, 0, 0, Fading(), False
+        self.phase_bytes, self.failed, self.first, self.pause, self.fading, self.shakes = (
+            0,
+            False,
+            0,
+            0,
+            Fading(),
+            False,
+        )
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -182,14 +191,31 @@ class Run:
         """Keys of the phases met so far, by their places."""
         return [key for key, _ in self.met]
 
+    @property
+    def size(self):
+        """Memory of phases, history and room, bytes."""
+        room = [self.scratch, self.phases.rows, self.phases.found, self.series.series]
+        more = sum([mirror.nbytes for mirror in self.mirrors]) + sum([each.nbytes for each in room])
+        return self.phase_bytes + self.journal.size + self.peaks_.size + more
+
+    def trim(self):
+        """Give back the room of a long history, which must have been read; that of a short one serves the next run."""
+        if self.scratch.nbytes > KEPT:
+            self.scratch = self.unkept
+        if self.journal.size > KEPT:
+            self.journal.clear()
+
     def enter(self, key):
         """Return the place of the phase of a key."""
-        failures.check_key(key)
-        place: cython.int = self.places.get(key, -1)
-        if place < 0:
-            place = self.prepare(key, len(self.met))
+        place: cython.int = self.place_of(key)
         self.load(place)
         return place
+
+    def place_of(self, key):
+        """Return the place of the phase of a key, and prepare it if it has not been met."""
+        failures.check_key(key)
+        place: cython.int = self.places.get(key, -1)
+        return self.prepare(key, len(self.met)) if place < 0 else place
 
     def load(self, place):
         """Use a phase that has been met, and prepare it if it was forgotten."""
@@ -198,6 +224,9 @@ class Run:
         if not self.phases.knows(place, self.shakes):
             with cython.gil:
                 self.renew(place)
+        if self.phases.halvings(place) < 0:  # of this system; others of the stack may have such a phase
+            with cython.gil:
+                self.refuse_step(place)
         return 0
 
     def renew(self, place):
@@ -205,15 +234,15 @@ class Run:
         if not self.phases.knows(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            self.size += self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
+            self.phase_bytes += self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
         return 0
 
     def prepare(self, key, place):
         """Prepare a phase, and return its place."""
         phase, tables = prepared_phase_and_tables(self.system, key, self.h, self.mirrors)
-        if self.size > self.memory:
+        if self.phase_bytes > self.memory:
             self.forget()
-        self.size += self.phases.add(place, tables, phase.events, self.h)
+        self.phase_bytes += self.phases.add(place, tables, phase.events, self.h) + phase.nbytes
         if isinstance(phase, NonlinearPhase):
             self.phases.drive(place, phase.field, phase.scale, phase.counted)
             self.flow.know(phase, place)
@@ -223,6 +252,7 @@ class Run:
         if place == self.used.shape[0]:
             self.used = np.concatenate((self.used, np.zeros(place, dtype=np.int64)))
         self.series.widen(len(phase.events))
+        self.peaks_.widen(tables.rows)
         self.journal.meet(place, phase.events)
         return place
 
@@ -231,9 +261,9 @@ class Run:
         place: cython.int
         for place in np.argsort(self.used[: len(self.met)]).tolist():
             if place != self.now and self.phases.knows(place, False) and not self.phases.nonlinear(place):
-                self.size -= self.phases.drop(place) + self.fading.drop(place)
+                self.phase_bytes -= self.phases.drop(place) + self.met[place][1].nbytes + self.fading.drop(place)
                 self.met[place] = self.met[place][0], None
-            if self.size <= self.memory // 2:
+            if self.phase_bytes <= self.memory // 2:
                 break
 
     def advance(self, a, vertical=None, history: cython.bint = False):
@@ -264,8 +294,7 @@ class Run:
             As `advance`, for the run `batch.place`; with 1 added to that, the next call goes on with the others.
         """
         number: cython.int
-        for number, key in enumerate(batch.keys):
-            batch.first[number] = self.enter(key)
+        batch.first[:] = -1
         for number, name in enumerate(batch.names):
             batch.kinds[number] = self.journal.kind(name)
         with cython.nogil:
@@ -281,6 +310,9 @@ class Run:
         while batch.place < batch.count:
             run = batch.place
             self.choose(batch.which[run])
+            if batch.first[batch.phase[run]] < 0:
+                with cython.gil:
+                    self.meet_first(batch)
             self.first = batch.first[batch.phase[run]]
             for i in range(self.n):
                 self.start[i] = batch.starts[run, i]
@@ -407,7 +439,7 @@ class Run:
                 else:
                     if self.fading.place != self.now or self.fading.which != self.which:
                         with cython.gil:
-                            self.size += self.fading.take(self.met[self.now][1], self.now, self.which)
+                            self.phase_bytes += self.fading.take(self.met[self.now][1], self.now, self.which)
                     wait = self.fading.decay.time_to_rest(self.y, self.high, self.one_sided)
                 if wait == 0.0:
                     return 1
@@ -498,6 +530,16 @@ class Run:
         return 0
 
     # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it when it ends.
+
+    def meet_first(self, batch):
+        """Note the place of the first phase of the present run of a batch."""
+        number: cython.int = batch.phase[batch.place]
+        batch.first[number] = self.place_of(batch.keys[number])
+        return 0
+
+    def refuse_step(self, place):
+        """Raise the error of a motion that overflows within a step."""
+        raise failures.endless(*self.met[place], self.which, self.h)
 
     def meet(self, event, outcome):
         """Return the place of the phase that follows an outcome for the first time."""

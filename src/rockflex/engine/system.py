@@ -192,7 +192,19 @@ class LinearPhase:
         arrays = {name: each[place] for name, each in given.items() if each is not None}
         return LinearPhase(**arrays, events=tuple(_of(event, place, EVENT_NUMBERS) for event in self.events))
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of the phase and its events, in bytes."""
+        return _memory_of(self, *self.events, *(event.rest for event in self.events))
 
+
+def _memory_of(*parts: object) -> int:
+    """The memory of dataclasses with arrays, in bytes."""
+    given = [each for part in parts if part is not None for each in vars(part).values()]
+    return OBJECT * len(parts) + sum(each.nbytes for each in given if isinstance(each, np.ndarray))
+
+
+OBJECT = 400  # bytes of an event without the numbers in its arrays, or of what follows instead, roughly
 VERTICAL = "A_v", "f_v", "C_v", "d_v"
 
 
@@ -244,6 +256,11 @@ class NonlinearPhase:
         """The phase itself: there is no stack of them."""
         del place
         return self
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the phase and its events, in bytes."""
+        return _memory_of(self, *self.events)
 
 
 @dataclass(frozen=True, eq=False)

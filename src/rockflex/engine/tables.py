@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError, System, up8
+from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, System, up8
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
 FEWEST = 10  # terms of a series, of which none is looked at: that they end earlier is rare
 SMALL = 1e-18  # of a sum: terms that no longer change it
+ENDLESS = -1  # for `halvings`: no step is short enough, as the motion overflows
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
@@ -30,7 +31,7 @@ class Tables(NamedTuple):
     outputs: int
     rows: int
     shift: int
-    halvings: NDArray[np.intc]  # of the step, so that its power series converge
+    halvings: NDArray[np.intc]  # of the step, so that its power series converge; or ENDLESS
     block: Array
     step: Array
     moves: Array
@@ -64,6 +65,11 @@ class Mirror(NamedTuple):
         if C.shape != self.C.shape or not ((self.C == C).all(axis=2) | (self.C == -C).all(axis=2)).all():
             return 0
         return 1 if np.array_equal(c, self.c) else -1 if np.array_equal(c, -self.c) else 0
+
+    @property
+    def nbytes(self) -> int:
+        """Memory beside that of the phase, in bytes."""
+        return sum(each.nbytes for each in (self.step, *self.bounds))
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -158,19 +164,16 @@ def prepared_phase_and_tables(
 ) -> tuple[LinearPhase | NonlinearPhase, Tables]:
     """Return the phase of a key, and its tables for steps of h.
 
-    Raises
-    ------
-    StepTooLongError
-        If a linear motion overflows within a step.
+    Where the motion of a system overflows within a step, its `halvings` are `ENDLESS`.
     """
     with PREPARING:
         phase = system.checked(key)
         if isinstance(phase, NonlinearPhase):
             return phase, tables_of_nonlinear_phase(phase)
         tables = tables_of(phase, h, mirrors)
-    if not np.isfinite(tables.step).all():
-        words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
-        raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
+    endless = ~np.isfinite(tables.step).all(axis=(1, 2))
+    if endless.any():
+        tables = tables._replace(halvings=np.where(endless, ENDLESS, tables.halvings).astype(np.intc))
     return phase, tables
 
 

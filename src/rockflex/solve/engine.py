@@ -80,7 +80,7 @@ class EngineStack:
 
     @property
     def size(self) -> int:
-        """Memory of the tables of all solvers that are not in use, bytes."""
+        """Memory of all solvers that are not in use, bytes."""
         return sum(solver.size for solvers in list(self._solvers.values()) for solver in list(solvers))
 
     def taken(self, dt: float) -> Run:
@@ -92,7 +92,8 @@ class EngineStack:
                 return Run(self.system, dt)
 
     def returned(self, solver: Run) -> None:
-        """Keep a solver for the next run."""
+        """Keep a solver, whose history has been read, for the next run."""
+        solver.trim()
         if solver.counts[0] < MAX_KEYS:
             self._solvers[solver.h].append(solver)
 
@@ -162,8 +163,8 @@ class Engine:
 
     @property
     def size(self) -> int:
-        """Memory of all tables so far in bytes."""
-        return sum(vars(self)[name].size for name in ("stack", "shaken") if name in vars(self))
+        """Memory of what is kept for further runs, in bytes."""
+        return sum(stack.size for stack in {vars(self)[name] for name in ("stack", "shaken") if name in vars(self)})
 
     @property
     def size_of_plain(self) -> int:
@@ -248,6 +249,8 @@ class Engine:
 
     def of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
+        if not places.size:  # all runs were refused
+            return np.zeros((0, self.model.layout.size))
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
         if self.model.integrated:

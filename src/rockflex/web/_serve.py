@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 KEEP_ALIVE = 20  # s for the next request on an open connection
 GRACE = 3  # s for the answers in progress when the server is stopped
+ARENAS = -8, 2  # what glibc's malloc.h calls M_ARENA_MAX, and how many pools of memory the threads share
 
 
 def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
@@ -62,6 +63,7 @@ def serve(
         If the port cannot be opened.
     """
     number = checked_whole_number("port", port, 1, 65535)
+    _let_threads_share_memory()
     app = make_app(host, names)
     import signal
     import socket
@@ -106,3 +108,12 @@ def serve(
         finally:
             server.should_exit = True
             running.join(GRACE + 2.0)
+
+
+def _let_threads_share_memory() -> None:
+    """Limit the pools that threads take memory from: glibc gives each thread one of its own, and little of it back."""
+    import ctypes
+    import platform
+
+    if platform.libc_ver()[0] == "glibc":
+        ctypes.CDLL(None).mallopt(*ARENAS)
