@@ -3,7 +3,6 @@
 import hashlib
 import io
 import re
-import zipfile
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,6 +13,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from rockflex._archives import ArchiveLimits, array_from_npy, npy_shape_and_type, open_archive
 from rockflex._errors import InputError
 from rockflex.motion import (
     GroundMotion,
@@ -27,6 +27,7 @@ from rockflex.web._refusal import Refusal, errors_as_refusals
 MAX_RECORDS = 64  # in memory
 MAX_NAME = 60  # characters of the name under which a file is stored while it is read
 MATRICES = ("mass", "stiffness", "heights", "rotations")
+MATRICES_LIMITS = ArchiveLimits(100, MAX_FILE_BYTES, 4 * MAX_FILE_BYTES)
 
 
 Cached = TypeVar("Cached")
@@ -227,23 +228,21 @@ def _matrix_from_text(text: str) -> Any:
 
 def _matrices_from_npz(name: str, content: bytes) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+    # A header may claim an array of any size, so it is read before any memory is allocated.
+    with open_archive(content, MATRICES_LIMITS) as archive:
+        members = {each.filename: each for each in archive.entries}
         for part in MATRICES:
-            if f"{part}.npy" not in archive.namelist():
+            if f"{part}.npy" not in members:
                 continue
-            # A header may claim an array of any size, so it is read before any memory is allocated.
-            with archive.open(f"{part}.npy") as file:
-                version = np.lib.format.read_magic(file)
-                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                shape, _, kind = read(file)
+            packed = archive.read(members[f"{part}.npy"])
+            shape, kind = npy_shape_and_type(packed)
             if kind.kind not in "fiu" or len(shape) > 2 or max(shape, default=0) > MAX_FREEDOMS:
                 message = (
                     f"{name}: {part} is an array {shape} of {kind}, but numbers for up to {MAX_FREEDOMS} freedoms are "
                     "expected."
                 )
                 raise Refusal({"structure": message})
-            with archive.open(f"{part}.npy") as file:
-                found[part] = _matrix_as_numbers(name, part, np.lib.format.read_array(file, allow_pickle=False))
+            found[part] = _matrix_as_numbers(name, part, array_from_npy(packed))
     if "stiffness" not in found:
         message = f"{name} must hold the arrays mass, stiffness and heights, but it holds no stiffness."
         raise Refusal({"structure": message})
