@@ -222,15 +222,15 @@ class PageServer:
         return JSONResponse({"status": job.status, "done": job.done, "total": job.total, "errors": errors})
 
     async def made(self, request: Request) -> Response:
-        """Hand out a file that was made, and forget its content."""
-        job = self.files.get(request.path_params["token"])
-        if job.file is None:
+        """Hand out a file that was made; the page says when it has arrived, and it is forgotten only then."""
+        made = self.files.get(request.path_params["token"]).file
+        if made is None:
             raise Refusal("The file is not finished, or was handed out already.", 404)
-        (name, content), job.file = job.file, None
+        name, content = made
         return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
     async def cancel(self, request: Request) -> Response:
-        """Stop a study, or to make a file."""
+        """Stop a study, or to make a file, or forget one that has arrived."""
         jobs = self.files if request.url.path.startswith("/api/file/") else self.jobs
         jobs.cancel(request.path_params["token"])
         return JSONResponse({})

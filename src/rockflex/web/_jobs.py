@@ -15,7 +15,7 @@ from rockflex.study import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 MAX_STUDIES = 40  # studies that are remembered
-MAX_FILES = 8  # files, until they are handed out
+MAX_FILES = 8  # files, until they have arrived
 MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 MAX_WAITING = 12  # jobs of a kind that may wait or run at the same time
 ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because its page was closed
@@ -66,6 +66,9 @@ class BackgroundWork:
         """Compute the result, and call `check_interruption` often."""
         raise NotImplementedError
 
+    def forget(self) -> None:
+        """Drop what takes much memory, because it is no longer wanted."""
+
     def _unwanted(self) -> bool:
         return self.cancelled.is_set() or monotonic() - self.seen > ABANDONED_AFTER
 
@@ -109,6 +112,10 @@ class BackgroundFileJob(BackgroundWork):
         made = self._make(self._report)
         check_interruption()
         self.file = made
+
+    def forget(self) -> None:
+        """Drop the file, which has arrived."""
+        self.file = None
 
     def _report(self, done: int, total: int) -> None:
         check_interruption()
@@ -166,9 +173,10 @@ class BackgroundJobs(Generic[AnyWork]):
         return job
 
     def cancel(self, token: str) -> None:
-        """Stop a job; completed chunks remain available."""
+        """Stop a job; completed chunks remain available, but not the file of one that is done."""
         job = self.get(token)
         job.cancelled.set()
+        job.forget()
         if job.status == "waiting":
             job.status = "cancelled"
 
