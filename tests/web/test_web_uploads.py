@@ -545,7 +545,7 @@ def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
         await asyncio.sleep(0.01)
         return body
 
-    async def answer(work, _most: int):
+    async def answer(_request, work, _most: int):
         await asyncio.sleep(0.01)
         found = work()
         seen.append(inside[0])
@@ -555,7 +555,7 @@ def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
     monkeypatch.setattr(_app, "uploaded_file_bytes", file_of)
     request = SimpleNamespace(query_params={})
     server = _app.PageServer()
-    monkeypatch.setattr(server, "answer", answer)
+    monkeypatch.setattr(server, "run", answer)
 
     async def all_at_once() -> list[int]:
         return [each.status_code for each in await asyncio.gather(*(server.folder(request) for _ in range(8)))]

@@ -2,11 +2,12 @@
 
 import asyncio
 import logging
+import math
 import re
 from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
-from threading import Event, Thread
+from threading import Thread
 from typing import Any, cast, get_args
 from urllib.parse import quote
 
@@ -38,13 +39,14 @@ from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
+from rockflex.web._slots import Slots, visitor_left, visitor_of
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
 from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
 
-WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
+MAX_READ = 2  # files read at once, beside the answers: most of it holds the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
@@ -63,7 +65,9 @@ class PageServer:
         self.jobs = BackgroundJobs[RunsJob]("studies", MAX_STUDIES)
         self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
-        self._limiters: dict[int, anyio.CapacityLimiter] = {}
+        self.answers, self.selections = Slots(MAX_ANSWERS), Slots(MAX_SELECTIONS_COMPUTED)
+        self.readings, self.folders_read = Slots(MAX_READ), Slots(MAX_FOLDERS_READ)
+        self._threads = anyio.CapacityLimiter(math.inf)  # the slots limit them
 
     def warm_up(self) -> None:
         """Import the modules and prepare the engine before the first visitor needs them."""
@@ -72,35 +76,20 @@ class PageServer:
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
 
-    async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
-        """Compute outside the event loop, with a limited number of answers at once."""
-        if most not in self._limiters:
-            self._limiters[most] = anyio.CapacityLimiter(most)
-        try:
-            return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
-        except asyncio.CancelledError as error:  # at the end of the server, which would print it with its traceback
-            raise Refusal("The server was stopped.", 503) from error
+    async def run(self, request: Request, work: Answer, slots: Slots | None = None) -> Any:
+        """Compute outside the event loop, a limited number of answers at once, until the visitor no longer waits."""
+        async with (slots or self.answers).place(request) as gone:
 
-    async def run(self, request: Request, work: Answer, most: int = MAX_ANSWERS) -> Any:
-        """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
-        gone = Event()
+            def guarded() -> Any:
+                with stopping_when(gone.is_set):
+                    return work()
 
-        def guarded() -> Any:
-            with stopping_when(gone.is_set):
-                return work()
-
-        async def watch() -> None:
-            while not await request.is_disconnected():
-                await anyio.sleep(WATCH_INTERVAL)
-            gone.set()
-
-        watching = asyncio.create_task(watch())
-        try:
-            return await self.answer(guarded, most)
-        except RunStoppedError as error:
-            raise Refusal("The run was stopped because nobody waits for its answer.", 499) from error
-        finally:
-            watching.cancel()
+            try:
+                return await anyio.to_thread.run_sync(guarded, limiter=self._threads, abandon_on_cancel=True)
+            except RunStoppedError as error:
+                raise visitor_left() from error
+            except asyncio.CancelledError as error:  # at the end of the server, which would print its traceback
+                raise Refusal("The server was stopped.", 503) from error
 
     async def about(self, _: Request) -> Response:
         """Forms, presets, suites, pulses, units and limits."""
@@ -116,13 +105,13 @@ class PageServer:
         state, _ = await _state_and_content(request)
         return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
 
-    def view(self, work: Callable[[PageState, dict[str, Any]], Any], most: int = MAX_ANSWERS) -> Endpoint:
+    def view(self, work: Callable[[PageState, dict[str, Any]], Any], slots: Slots | None = None) -> Endpoint:
         """Return the endpoint that answers with a function of the state, and of the whole content, of a request."""
 
         async def endpoint(request: Request) -> Response:
             state, content = await _state_and_content(request)
             with use_language(state.language):
-                return JSONResponse(await self.run(request, lambda: work(state, content), most))
+                return JSONResponse(await self.run(request, lambda: work(state, content), slots))
 
         return endpoint
 
@@ -141,7 +130,7 @@ class PageServer:
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
             return as_json_value({"upload": key, "name": motion.name, **facts})
 
-        return JSONResponse(await self.answer(work))
+        return JSONResponse(await self.run(request, work, self.readings))
 
     async def folder(self, request: Request) -> Response:
         """Records from a folder."""
@@ -158,13 +147,15 @@ class PageServer:
                 token = self.uploads.folders.add(folder, files, f"{units} {dt}")
                 return {"folder": token, **folder.report}
 
-            return JSONResponse(await self.answer(work, MAX_FOLDERS_READ))
+            return JSONResponse(await self.run(request, work, self.folders_read))
 
     async def project(self, request: Request) -> Response:
         """The state in a project's file."""
         async with self._folders_received:
             body = await uploaded_file_bytes(request, limits.MAX_PROJECT_BYTES, limits.MAX_PROJECT_BYTES)
-            return JSONResponse(await self.answer(lambda: state_of_project(body, self.uploads), MAX_FOLDERS_READ))
+            return JSONResponse(
+                await self.run(request, lambda: state_of_project(body, self.uploads), self.folders_read)
+            )
 
     async def folder_report(self, request: Request) -> Response:
         """Report on a folder that the server has."""
@@ -175,7 +166,7 @@ class PageServer:
         """Matrices from a file."""
         body, query = await uploaded_file_bytes(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
-        return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
+        return JSONResponse(await self.run(request, lambda: read_uploaded_matrices(name, body, part), self.readings))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -183,37 +174,38 @@ class PageServer:
         state, _ = await _state_and_content(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind))}
+            job = PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind)
+            return {"token": self.jobs.start(job, visitor_of(request))}
 
-        return JSONResponse(await self.answer(work))
+        return JSONResponse(await self.run(request, work))
 
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         with use_language(state.language):
-            return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
+            return JSONResponse(await self.run(request, lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Start to make the table or the figure of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return self._making(lambda _: study_file(PAGES[kind], job, state, what), state)
+        return self._making(request, lambda _: study_file(PAGES[kind], job, state, what), state)
 
     async def make(self, request: Request) -> Response:
         """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
-        return self._making(file_maker(state, request.path_params["what"], self.uploads), state)
+        return self._making(request, file_maker(state, request.path_params["what"], self.uploads), state)
 
-    def _making(self, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
+    def _making(self, request: Request, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
         def styled(told: Progress) -> tuple[str, bytes]:
             from rockflex.plot import figure_style
 
             with figure_style(units=state.units, language=state.language):
                 return make(told)
 
-        return JSONResponse({"token": self.files.start(BackgroundFileJob(styled))})
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(styled), visitor_of(request))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -361,7 +353,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/upload", server.upload, methods=["POST"]),
         Route("/api/folder", server.folder, methods=["POST"]),
         Route("/api/folder/{token}", server.folder_report),
-        Route("/api/selection", view(selection, MAX_SELECTIONS_COMPUTED), methods=["POST"]),
+        Route("/api/selection", view(selection, server.selections), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
