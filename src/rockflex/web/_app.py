@@ -31,23 +31,31 @@ from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
-from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
+from rockflex.web._folders import FIELD, MAX_LIST_BYTES
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
-from rockflex.web._projects import state_of_project
+from rockflex.web._projects import read_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders
+from rockflex.web._readers import Readers
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
 from rockflex.web._slots import Slots, visitor_left, visitor_of
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
-from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
+from rockflex.web._uploads import (
+    UploadedRecords,
+    read_sent_folder,
+    read_uploaded_matrices,
+    read_uploaded_record,
+    read_uploaded_vertical,
+)
 
 STATIC = Path(__file__).parent / "static"
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
 MAX_READ = 2  # files read at once, beside the answers: most of it holds the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
+FOLDER_SECONDS = 60.0  # to read one
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
 MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
@@ -66,6 +74,7 @@ class PageServer:
         self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self.answers, self.selections = Slots(MAX_ANSWERS), Slots(MAX_SELECTIONS_COMPUTED)
+        self.readers = Readers()
         self.readings, self.folders_read = Slots(MAX_READ), Slots(MAX_FOLDERS_READ)
         self._threads = anyio.CapacityLimiter(math.inf)  # the slots limit them
 
@@ -123,9 +132,10 @@ class PageServer:
 
         def work() -> Any:
             if under:
-                motion = read_uploaded_vertical(name, body, units, dt, self.uploads.get(under))
+                along = self.uploads.get(under)
+                motion = self.readers.read("record.vertical", read_uploaded_vertical, name, body, units, dt, along)
             else:
-                motion = read_uploaded_record(name, body, units, dt)
+                motion = self.readers.read("record.upload", read_uploaded_record, name, body, units, dt)
             key = self.uploads.add(motion, body, f"{units} {dt} {motion.name} {under}")
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
             return as_json_value({"upload": key, "name": motion.name, **facts})
@@ -141,10 +151,10 @@ class PageServer:
             language = cast("Language | None", query.get("language"))
 
             def work() -> dict[str, Any]:
-                files = unpacked_record_files(body)
-                with use_language(language):
-                    folder = read_record_folder(files, units, dt)
-                token = self.uploads.folders.add(folder, files, f"{units} {dt}")
+                token, folder = self.readers.read(
+                    FIELD, read_sent_folder, body, units, dt, seconds=FOLDER_SECONDS, language=language
+                )
+                self.uploads.folders.put(token, folder)
                 return {"folder": token, **folder.report}
 
             return JSONResponse(await self.run(request, work, self.folders_read))
@@ -153,9 +163,13 @@ class PageServer:
         """The state in a project's file."""
         async with self._folders_received:
             body = await uploaded_file_bytes(request, limits.MAX_PROJECT_BYTES, limits.MAX_PROJECT_BYTES)
-            return JSONResponse(
-                await self.run(request, lambda: state_of_project(body, self.uploads), self.folders_read)
-            )
+
+            def work() -> dict[str, Any]:
+                answer, records = self.readers.read("project", read_project, body, seconds=FOLDER_SECONDS)
+                self.uploads.take(records)
+                return answer
+
+            return JSONResponse(await self.run(request, work, self.folders_read))
 
     async def folder_report(self, request: Request) -> Response:
         """Report on a folder that the server has."""
@@ -166,7 +180,11 @@ class PageServer:
         """Matrices from a file."""
         body, query = await uploaded_file_bytes(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
-        return JSONResponse(await self.run(request, lambda: read_uploaded_matrices(name, body, part), self.readings))
+
+        def work() -> dict[str, Any]:
+            return self.readers.read("structure", read_uploaded_matrices, name, body, part)
+
+        return JSONResponse(await self.run(request, work, self.readings))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -334,6 +352,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         yield
         server.jobs.close()
         server.files.close()
+        server.readers.close()
 
     middleware = [
         Middleware(SecurityHeaders),

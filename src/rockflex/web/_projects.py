@@ -7,6 +7,7 @@ from typing import Any
 from rockflex._archives import ArchiveLimits, archive_bytes
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
+from rockflex.motion import GroundMotion
 from rockflex.project._archive import unpacked_members
 from rockflex.project._project_file import (
     PAGE,
@@ -18,7 +19,7 @@ from rockflex.project._project_file import (
     structure_keys,
 )
 from rockflex.web._alternatives import project_of_state
-from rockflex.web._folders import SentRecordFile, flat_file_names, read_record_folder
+from rockflex.web._folders import RecordFolder, SentRecordFile, flat_file_names, read_record_folder
 from rockflex.web._limits import (
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,
@@ -44,6 +45,15 @@ def project_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes
 
 def _json(state: PageState) -> str:
     return json.dumps(as_json_value(state.model_dump(exclude_none=True)))
+
+
+Records = tuple[Mapping[str, GroundMotion], Mapping[str, RecordFolder]]
+
+
+def read_project(content: bytes) -> tuple[dict[str, Any], Records]:
+    """Return the answer about a project's file, and the records in it, which `UploadedRecords.take` stores."""
+    uploads = UploadedRecords()
+    return state_of_project(content, uploads), uploads.items()
 
 
 def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]:
