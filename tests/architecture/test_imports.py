@@ -49,6 +49,7 @@ ALLOWED = {
     "kinds": {"motion", "structure", "study", "fragility", "plot", "papers"},
 }
 FOUNDATION = {
+    "_archives",
     "_arrays",
     "_cases",
     "_checks",

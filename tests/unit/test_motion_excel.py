@@ -171,7 +171,7 @@ def test_what_stands_above_the_numbers(tmp_path):
 def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
     file = write_excel(tmp_path, {"S": ROWS})
     monkeypatch.setattr(_excel, "MAX_UNPACKED_BYTES", 100)
-    with pytest.raises(rf.InputError, match=r"has 0 MB when unpacked, above 0\.0001 MB\. Save it as CSV"):
+    with pytest.raises(rf.InputError, match=r"more than 0\.0001 MB when unpacked\. Save it as CSV"):
         rf.read_motion(file)
 
 

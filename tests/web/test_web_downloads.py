@@ -3,6 +3,7 @@
 import io
 import json
 import re
+import socket
 import time
 
 import pytest
@@ -213,6 +214,22 @@ def test_it_can_be_cancelled_and_says_how_far_it_is(client) -> None:
         time.sleep(0.02)
     assert answer["status"] == "cancelled"
     assert answer["done"] < answer["total"]
+
+
+def test_a_file_is_kept_until_it_has_arrived(client) -> None:
+    path = f"/api/file/{client.make('histories', client.state())}"
+    while json.loads(client.request(path)[2])["status"] != "done":
+        time.sleep(0.02)
+    assert client.request(f"{path}/content", method="HEAD")[0] == 200
+    host, port = client.url.removeprefix("http://").split(":")
+    with socket.create_connection((host, int(port))) as broken:
+        broken.sendall(f"GET {path}/content HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        assert broken.recv(100)
+    status, _, content = client.request(f"{path}/content")
+    assert status == 200
+    assert content.startswith(b"model,")
+    assert client.request(path, method="DELETE")[0] == 200
+    assert client.request(f"{path}/content")[0] == 404
 
 
 def test_an_unknown_file_is_refused(client) -> None:

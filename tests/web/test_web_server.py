@@ -4,6 +4,7 @@ import asyncio
 import io
 import json
 import math
+import os
 import signal
 import socket
 import subprocess
@@ -503,11 +504,20 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly() -> None:
 
 
 @pytest.mark.slow
-def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -> None:
+def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping(tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    (tmp_path / "reading_for_ever.py").write_text(
+        "import sys, tempfile, time\n"
+        "def read(*_):\n"
+        "  with tempfile.TemporaryDirectory():\n"
+        "    print('reading', file=sys.stderr, flush=True)\n"
+        "    while True: time.sleep(0.01)\n"
+    )
     program = (
-        "import time\nimport rockflex.web._app as app\n"
-        "def read(*_):\n  print('reading', file=__import__('sys').stderr, flush=True)\n  while True: time.sleep(0.01)\n"
-        "app.read_uploaded_record = read\nfrom rockflex.cli import main; main()"
+        "import rockflex.web._app as app, reading_for_ever\n"
+        "app.read_uploaded_record = reading_for_ever.read\nfrom rockflex.cli import main; main()"
     )
     with served(sys.executable, "-c", program, "serve") as (process, port), ExitStack() as held:
         connection = held.enter_context(socket.create_connection(("127.0.0.1", port)))
@@ -520,6 +530,7 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
         process.send_signal(signal.SIGTERM)
         _, said = process.communicate(timeout=HANG)
     assert "Traceback" not in said
+    assert [*(tmp_path / "temporary").iterdir()] == []
 
 
 @pytest.mark.slow

@@ -209,7 +209,7 @@ def test_a_failure_is_told_without_a_traceback(caplog) -> None:
 def test_jobs_are_many_but_limited() -> None:
     jobs = BackgroundJobs("studies", MAX_STUDIES)
     tokens = [jobs.start(StudyJob(Plan(), "cloud")) for _ in range(12)]
-    with pytest.raises(Refusal, match="busy with other studies"):
+    with pytest.raises(Refusal, match="12 studies of yours"):
         jobs.start(StudyJob(Plan(), "cloud"))
     jobs.cancel(tokens[-1])
     assert jobs.get(tokens[-1]).status == "cancelled"

@@ -466,12 +466,9 @@ def test_archives_that_grow_are_refused() -> None:
     assert files["large.txt"].content is None
     assert files["a.AT2"].content is not None
     many = zipped({f"{i}.txt": b"" for i in range(MAX_FOLDER_FILES + 1)})
-    assert "501 files, but the page takes 500" in refusal(unpacked_record_files, body_of({"many.zip": many}))
+    assert "501 files, more than 500" in refusal(unpacked_record_files, body_of({"many.zip": many}))
     assert "more than 500 files" in refusal(
         unpacked_record_files, body_of({f"{i}.txt": b"" for i in range(MAX_FOLDER_FILES + 1)})
-    )
-    assert "more than 500 files" in refusal(
-        unpacked_record_files, body_of({"x.zip": b"PK\x03\x04" + b"PK\x01\x02" * 2000})
     )
     book = zipped({"xl/workbook.xml": b"0" * (MAX_FOLDER_BYTES + 1)})
     assert "more than 80 MB" in refusal(unpacked_record_files, body_of({"book.xlsx": book}))
@@ -548,7 +545,7 @@ def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
         await asyncio.sleep(0.01)
         return body
 
-    async def answer(work, _most: int):
+    async def answer(_request, work, _most: int):
         await asyncio.sleep(0.01)
         found = work()
         seen.append(inside[0])
@@ -558,7 +555,7 @@ def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
     monkeypatch.setattr(_app, "uploaded_file_bytes", file_of)
     request = SimpleNamespace(query_params={})
     server = _app.PageServer()
-    monkeypatch.setattr(server, "answer", answer)
+    monkeypatch.setattr(server, "run", answer)
 
     async def all_at_once() -> list[int]:
         return [each.status_code for each in await asyncio.gather(*(server.folder(request) for _ in range(8)))]

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from rockflex._archives import ArchiveError, ArchiveLimits, archive_bytes, open_archive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._shown import first_texts_shown
 from rockflex.motion import _text
@@ -24,6 +25,7 @@ from rockflex.motion._record_signs import is_table_of_something_else
 
 ZIP_MAGIC, OLD_EXCEL_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 MAX_UNPACKED_BYTES = 100_000_000  # bytes of a workbook when unpacked
+MAX_MEMBERS = 5_000  # files in it
 MAX_ROW_BYTES = 2_000_000  # bytes of a row, all of whose cells openpyxl makes before it gives the first
 MAX_CELLS = 5_000_000  # cells of a workbook, also empty ones; every 20 characters in a cell count as one
 ROW_EDGES = re.compile(rb"<(?:\w+:)?row\b|</(?:\w+:)?sheetData>")
@@ -122,31 +124,30 @@ def excel_sheets(file: Path, content: bytes) -> list[ExcelSheet]:
     if content.startswith(OLD_EXCEL_MAGIC):
         raise InputError(f"{file} is a workbook of the old format. Save it as .xlsx or CSV.")
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            size = sum(each.file_size for each in archive.infolist())
-            workbook = "xl/workbook.xml" in archive.namelist()
-    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+        with open_archive(content, ArchiveLimits(MAX_MEMBERS, MAX_UNPACKED_BYTES, MAX_UNPACKED_BYTES)) as archive:
+            if not any(each.filename == "xl/workbook.xml" for each in archive.entries):
+                raise InputError(f"{file} is an archive, but no workbook. Unpack it, and give the files in it.")
+            members = archive.contents()
+    except ArchiveError as error:
+        if error.kind == "size":
+            raise InputError(f"{file} {error}. Save it as CSV.") from error
         raise InputError(f"{file} is a damaged archive or workbook. Download it again.") from error
-    if not workbook:
-        raise InputError(f"{file} is an archive, but no workbook. Unpack it, and give the files in it.")
-    if size > MAX_UNPACKED_BYTES:
-        raise InputError(
-            f"{file} has {size / 1e6:.0f} MB when unpacked, above {MAX_UNPACKED_BYTES / 1e6:g} MB. Save it as CSV."
-        )
     try:
         import openpyxl
     except ImportError as error:
         raise InputError(f"{file} is an Excel workbook, which needs openpyxl to be read. {INSTALL}") from error
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            parts = {part: _sheet_part(archive.read(part)) for part in archive.namelist()}
+        parts = {name: _sheet_part(part) for name, part in members.items()}
         if any(part.longest_row > MAX_ROW_BYTES for part in parts.values()):
             raise InputError(
                 f"{file} has a row of more than {MAX_ROW_BYTES / 1e6:g} MB. Delete the cells beside the record."
             )
+        # What was counted, and not what else may be packed: openpyxl unpacks all of it.
+        counted = archive_bytes(members, zipfile.ZIP_STORED)
+        del members
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
-            book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+            book: Any = openpyxl.load_workbook(io.BytesIO(counted), read_only=True, data_only=True)
             return _sheets_of_open_workbook(file, book, parts)
     except InputError:
         raise

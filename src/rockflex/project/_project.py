@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, cast
 
+from rockflex._archives import archive_bytes
 from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
@@ -18,7 +19,7 @@ from rockflex._versions import package_versions
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, parse_model
 from rockflex.motion import GroundMotion, Selection
-from rockflex.project._archive import archive_bytes, read_archive
+from rockflex.project._archive import read_archive
 from rockflex.project._project_file import input_checksum, project_arguments, project_members
 from rockflex.report import write_report
 from rockflex.report.run import checked_report_path

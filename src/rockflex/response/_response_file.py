@@ -3,7 +3,6 @@
 import io
 import json
 import math
-import zipfile
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from rockflex._archives import ArchiveLimits, arrays_from_npz
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, write_file_atomically
@@ -57,6 +57,7 @@ from rockflex.response._peaks import (
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
+_LIMITS = ArchiveLimits(1_000, 4_000_000_000, 8_000_000_000)
 FORMAT, OLDER, OLDEST = "rockflex-response-4", "rockflex-response-3", "rockflex-response-2"
 PROPERTIES = (
     "omega",
@@ -140,13 +141,11 @@ def load_response(path: Path, kinds: dict[str, type]) -> Kept:
     if not path.exists():
         raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:
-        with zipfile.ZipFile(path) as archive:  # whole members, so that their checksums are verified
-            content = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
-        arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
+        arrays = arrays_from_npz(path, _LIMITS)
         scalars = json.loads(str(arrays["response"]))
         known = scalars["format"] in (FORMAT, OLDER, OLDEST)
         kept = _response_from_file(scalars, arrays, kinds) if known else None
-    except Exception as error:  # zipfile, zlib, NumPy and json raise almost any exception for damaged files
+    except Exception as error:  # NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
         raise InputError(f"{path} is not a saved response ({reason}). Give a file that Response.save wrote.") from error
     if kept is None:

@@ -1,15 +1,17 @@
 """Structures from the matrices or the modes of any finite element program, also in its files."""
 
 import hashlib
+import io
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsIndex, TypeAlias
+from typing import TYPE_CHECKING, Any, SupportsIndex, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockflex._archives import ArchiveError, ArchiveLimits, arrays_from_npz
 from rockflex._arrays import Array, Bools
 from rockflex._checks import (
     checked_damping_ratios,
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 NumbersOrPath: TypeAlias = ArrayLike | str | Path
 """Numbers, or the path of a file that contains them."""
 MAX_FREEDOMS = 20_000  # degrees of freedom of a sparse matrix: 3 GB as a dense one
+_NPZ_LIMITS = ArchiveLimits(1_000, 4_000_000_000, 8_000_000_000)
 MAX_FORM_LINES = 50  # of a file, which tell its form
 _ABAQUS_ENTRY = re.compile(r"\s*+-?\d++\s*+,\s*+\d++\s*+,\s*+-?\d++\s*+,\s*+\d++\s*+,\s*+[-+.\d]")
 _ENTRY = re.compile(r"\s*+\d++[\s,]++\d++[\s,]++[-+]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][-+]?+\d++)?+\s*+$")
@@ -135,6 +138,8 @@ def given_or_read_matrix(name: str, given: NumbersOrPath) -> ArrayLike:
         raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
     try:
         array = _READERS[path.suffix.lower()](name, path)
+    except ArchiveError as error:
+        raise InputError(f"{name}: no matrix of numbers can be read from {path}: it {error}.", field=name) from error
     except InputError:
         raise
     except Exception as error:  # readers of damaged files raise many types of exception
@@ -154,17 +159,18 @@ def matrix_file_checksum(name: str, path: Path) -> str:
 
 
 def _matrix_from_npz(name: str, path: Path) -> Array:
-    with np.load(path, allow_pickle=False) as content:
-        keys = content.files
-        if "format" in keys and "data" in keys:
-            from scipy.sparse import load_npz
+    content = arrays_from_npz(path, _NPZ_LIMITS)
+    if "format" in content and "data" in content:
+        from scipy.sparse import load_npz
 
-            return _dense_matrix(name, path, load_npz(path))
-        if name not in keys and len(keys) != 1:
-            raise InputError(
-                f'{name}: {path} must contain an array "{name}" or a single array, but it contains {keys}.', field=name
-            )
-        return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
+        read = io.BytesIO()
+        cast(Any, np.savez)(read, **content)
+        read.seek(0)
+        return _dense_matrix(name, path, load_npz(read))
+    if name not in content and len(content) != 1:
+        said = f'{path} must contain an array "{name}" or a single array, but it contains {[*content]}'
+        raise InputError(f"{name}: {said}.", field=name)
+    return np.asarray(content[name] if name in content else next(iter(content.values())), dtype=np.float64)
 
 
 def _matrix_from_mtx(name: str, path: Path) -> Array:

@@ -2,11 +2,12 @@
 
 import asyncio
 import logging
+import math
 import re
 from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
-from threading import Event, Thread
+from threading import Thread
 from typing import Any, cast, get_args
 from urllib.parse import quote
 
@@ -30,22 +31,31 @@ from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file_maker
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
-from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
+from rockflex.web._folders import FIELD, MAX_LIST_BYTES
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
-from rockflex.web._projects import state_of_project
+from rockflex.web._projects import read_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders
+from rockflex.web._readers import Readers
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
+from rockflex.web._slots import Slots, visitor_left, visitor_of
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
-from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
+from rockflex.web._uploads import (
+    UploadedRecords,
+    read_sent_folder,
+    read_uploaded_matrices,
+    read_uploaded_record,
+    read_uploaded_vertical,
+)
 
-WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
+MAX_READ = 2  # files read at once, beside the answers: most of it holds the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
+FOLDER_SECONDS = 60.0  # to read one
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
 MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
@@ -63,7 +73,10 @@ class PageServer:
         self.jobs = BackgroundJobs[RunsJob]("studies", MAX_STUDIES)
         self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
-        self._limiters: dict[int, anyio.CapacityLimiter] = {}
+        self.answers, self.selections = Slots(MAX_ANSWERS), Slots(MAX_SELECTIONS_COMPUTED)
+        self.readers = Readers()
+        self.readings, self.folders_read = Slots(MAX_READ), Slots(MAX_FOLDERS_READ)
+        self._threads = anyio.CapacityLimiter(math.inf)  # the slots limit them
 
     def warm_up(self) -> None:
         """Import the modules and prepare the engine before the first visitor needs them."""
@@ -72,35 +85,20 @@ class PageServer:
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
 
-    async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
-        """Compute outside the event loop, with a limited number of answers at once."""
-        if most not in self._limiters:
-            self._limiters[most] = anyio.CapacityLimiter(most)
-        try:
-            return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
-        except asyncio.CancelledError as error:  # at the end of the server, which would print it with its traceback
-            raise Refusal("The server was stopped.", 503) from error
+    async def run(self, request: Request, work: Answer, slots: Slots | None = None) -> Any:
+        """Compute outside the event loop, a limited number of answers at once, until the visitor no longer waits."""
+        async with (slots or self.answers).place(request) as gone:
 
-    async def run(self, request: Request, work: Answer, most: int = MAX_ANSWERS) -> Any:
-        """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
-        gone = Event()
+            def guarded() -> Any:
+                with stopping_when(gone.is_set):
+                    return work()
 
-        def guarded() -> Any:
-            with stopping_when(gone.is_set):
-                return work()
-
-        async def watch() -> None:
-            while not await request.is_disconnected():
-                await anyio.sleep(WATCH_INTERVAL)
-            gone.set()
-
-        watching = asyncio.create_task(watch())
-        try:
-            return await self.answer(guarded, most)
-        except RunStoppedError as error:
-            raise Refusal("The run was stopped because nobody waits for its answer.", 499) from error
-        finally:
-            watching.cancel()
+            try:
+                return await anyio.to_thread.run_sync(guarded, limiter=self._threads, abandon_on_cancel=True)
+            except RunStoppedError as error:
+                raise visitor_left() from error
+            except asyncio.CancelledError as error:  # at the end of the server, which would print its traceback
+                raise Refusal("The server was stopped.", 503) from error
 
     async def about(self, _: Request) -> Response:
         """Forms, presets, suites, pulses, units and limits."""
@@ -116,13 +114,13 @@ class PageServer:
         state, _ = await _state_and_content(request)
         return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
 
-    def view(self, work: Callable[[PageState, dict[str, Any]], Any], most: int = MAX_ANSWERS) -> Endpoint:
+    def view(self, work: Callable[[PageState, dict[str, Any]], Any], slots: Slots | None = None) -> Endpoint:
         """Return the endpoint that answers with a function of the state, and of the whole content, of a request."""
 
         async def endpoint(request: Request) -> Response:
             state, content = await _state_and_content(request)
             with use_language(state.language):
-                return JSONResponse(await self.run(request, lambda: work(state, content), most))
+                return JSONResponse(await self.run(request, lambda: work(state, content), slots))
 
         return endpoint
 
@@ -134,14 +132,15 @@ class PageServer:
 
         def work() -> Any:
             if under:
-                motion = read_uploaded_vertical(name, body, units, dt, self.uploads.get(under))
+                along = self.uploads.get(under)
+                motion = self.readers.read("record.vertical", read_uploaded_vertical, name, body, units, dt, along)
             else:
-                motion = read_uploaded_record(name, body, units, dt)
+                motion = self.readers.read("record.upload", read_uploaded_record, name, body, units, dt)
             key = self.uploads.add(motion, body, f"{units} {dt} {motion.name} {under}")
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
             return as_json_value({"upload": key, "name": motion.name, **facts})
 
-        return JSONResponse(await self.answer(work))
+        return JSONResponse(await self.run(request, work, self.readings))
 
     async def folder(self, request: Request) -> Response:
         """Records from a folder."""
@@ -152,19 +151,25 @@ class PageServer:
             language = cast("Language | None", query.get("language"))
 
             def work() -> dict[str, Any]:
-                files = unpacked_record_files(body)
-                with use_language(language):
-                    folder = read_record_folder(files, units, dt)
-                token = self.uploads.folders.add(folder, files, f"{units} {dt}")
+                token, folder = self.readers.read(
+                    FIELD, read_sent_folder, body, units, dt, seconds=FOLDER_SECONDS, language=language
+                )
+                self.uploads.folders.put(token, folder)
                 return {"folder": token, **folder.report}
 
-            return JSONResponse(await self.answer(work, MAX_FOLDERS_READ))
+            return JSONResponse(await self.run(request, work, self.folders_read))
 
     async def project(self, request: Request) -> Response:
         """The state in a project's file."""
         async with self._folders_received:
             body = await uploaded_file_bytes(request, limits.MAX_PROJECT_BYTES, limits.MAX_PROJECT_BYTES)
-            return JSONResponse(await self.answer(lambda: state_of_project(body, self.uploads), MAX_FOLDERS_READ))
+
+            def work() -> dict[str, Any]:
+                answer, records = self.readers.read("project", read_project, body, seconds=FOLDER_SECONDS)
+                self.uploads.take(records)
+                return answer
+
+            return JSONResponse(await self.run(request, work, self.folders_read))
 
     async def folder_report(self, request: Request) -> Response:
         """Report on a folder that the server has."""
@@ -175,7 +180,11 @@ class PageServer:
         """Matrices from a file."""
         body, query = await uploaded_file_bytes(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
-        return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
+
+        def work() -> dict[str, Any]:
+            return self.readers.read("structure", read_uploaded_matrices, name, body, part)
+
+        return JSONResponse(await self.run(request, work, self.readings))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -183,37 +192,38 @@ class PageServer:
         state, _ = await _state_and_content(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind))}
+            job = PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind)
+            return {"token": self.jobs.start(job, visitor_of(request))}
 
-        return JSONResponse(await self.answer(work))
+        return JSONResponse(await self.run(request, work))
 
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         with use_language(state.language):
-            return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
+            return JSONResponse(await self.run(request, lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Start to make the table, the figure or the report of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return self._making(study_file_maker(PAGES[kind], job, state, what), state)
+        return self._making(request, study_file_maker(PAGES[kind], job, state, what), state)
 
     async def make(self, request: Request) -> Response:
         """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
-        return self._making(file_maker(state, request.path_params["what"], self.uploads), state)
+        return self._making(request, file_maker(state, request.path_params["what"], self.uploads), state)
 
-    def _making(self, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
+    def _making(self, request: Request, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
         def styled(told: Progress) -> tuple[str, bytes]:
             from rockflex.plot import figure_style
 
             with figure_style(units=state.units, language=state.language):
                 return make(told)
 
-        return JSONResponse({"token": self.files.start(BackgroundFileJob(styled))})
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(styled), visitor_of(request))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -222,15 +232,15 @@ class PageServer:
         return JSONResponse({"status": job.status, "done": job.done, "total": job.total, "errors": errors})
 
     async def made(self, request: Request) -> Response:
-        """Hand out a file that was made, and forget its content."""
-        job = self.files.get(request.path_params["token"])
-        if job.file is None:
+        """Hand out a file that was made; the page says when it has arrived, and it is forgotten only then."""
+        made = self.files.get(request.path_params["token"]).file
+        if made is None:
             raise Refusal("The file is not finished, or was handed out already.", 404)
-        (name, content), job.file = job.file, None
+        name, content = made
         return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
     async def cancel(self, request: Request) -> Response:
-        """Stop a study, or to make a file."""
+        """Stop a study, or to make a file, or forget one that has arrived."""
         jobs = self.files if request.url.path.startswith("/api/file/") else self.jobs
         jobs.cancel(request.path_params["token"])
         return JSONResponse({})
@@ -342,6 +352,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         yield
         server.jobs.close()
         server.files.close()
+        server.readers.close()
 
     middleware = [
         Middleware(SecurityHeaders),
@@ -361,7 +372,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/upload", server.upload, methods=["POST"]),
         Route("/api/folder", server.folder, methods=["POST"]),
         Route("/api/folder/{token}", server.folder_report),
-        Route("/api/selection", view(selection, MAX_SELECTIONS_COMPUTED), methods=["POST"]),
+        Route("/api/selection", view(selection, server.selections), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),

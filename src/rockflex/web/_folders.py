@@ -4,13 +4,13 @@ import io
 import re
 import warnings
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from rockflex._archives import ArchiveError, ArchiveLimits, open_archive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
 from rockflex._language import translated
@@ -33,8 +33,6 @@ MAX_NAME_BYTES = 200  # of them, because file systems count bytes: most take 255
 MAX_LIST_BYTES = 500_000  # bytes of the list
 MAX_NAMED_FILES = 6  # of those of which the same was found
 FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f-\x9f]')
-ZIP_ENTRY = b"PK\x01\x02"  # before each name in the list of an archive
-DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, OSError)
 
 
 @dataclass(frozen=True)
@@ -103,31 +101,21 @@ def _listed_file_entry(entry: Any) -> tuple[str, int, bool]:
 def _files_in_archive(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes | None, int]]:
     """Yield the files of an archive, of which no more than `room` bytes are unpacked."""
     shown = flat_file_names([path])[0]
-    if content.count(ZIP_ENTRY) > 2 * MAX_FOLDER_FILES:  # opening it would take an object for each
-        raise _folder_refusal(
-            f"{shown} holds more than {MAX_FOLDER_FILES} files, which is more than the page takes. Pack fewer."
-        )
+    most = ArchiveLimits(MAX_FOLDER_FILES, MAX_FILE_BYTES, max(room, 0))
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            entries = [each for each in archive.infolist() if not each.is_dir()]
-            if len(entries) > MAX_FOLDER_FILES:
-                raise _folder_refusal(
-                    f"{shown} holds {len(entries)} files, but the page takes {MAX_FOLDER_FILES} at most. Pack fewer."
-                )
-            for each in entries:
+        with open_archive(content, most) as archive:
+            for each in archive.entries:
                 inner = _checked_folder_path(each.filename)
                 if each.file_size > MAX_FILE_BYTES:
                     yield inner, None, each.file_size
-                    continue
-                with archive.open(each) as file:
-                    data = file.read(min(MAX_FILE_BYTES, room) + 1)  # whatever the archive says of its size
-                room -= len(data)
-                if room < 0:
-                    raise _folder_too_large()
-                yield (inner, data, len(data)) if len(data) <= MAX_FILE_BYTES else (inner, None, len(data))
-    except DAMAGED as error:
-        locked = isinstance(error, RuntimeError) and "password" in str(error)
-        reason = "is protected by a password" if locked else "is a damaged archive, or packed in an unknown way"
+                else:
+                    yield inner, archive.read(each), each.file_size
+    except ArchiveError as error:
+        if error.kind == "size":
+            raise _folder_too_large() from error
+        if error.kind == "members":
+            raise _folder_refusal(f"{shown} {error}, which is more than the page takes. Pack fewer.") from error
+        reason = str(error) if error.kind == "packed" else "is a damaged archive"
         raise _folder_refusal(f"{shown} {reason}. Unpack it, and give the folder instead.") from error
 
 
@@ -136,9 +124,9 @@ def _unpacked_size(content: bytes | None) -> int:
     if content is None or not content.startswith(b"PK"):
         return len(content or b"")
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            return sum(each.file_size for each in archive.infolist())
-    except DAMAGED:
+        with open_archive(content, ArchiveLimits()) as archive:
+            return sum(each.file_size for each in archive.entries)
+    except ArchiveError:  # is not unpacked by the reader of workbooks either
         return len(content)
 
 

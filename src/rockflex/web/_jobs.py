@@ -4,8 +4,7 @@ import logging
 import secrets
 from collections import OrderedDict
 from collections.abc import Callable
-from queue import SimpleQueue
-from threading import Event, Lock, Thread
+from threading import Condition, Event, Thread
 from time import monotonic
 from typing import Any, Generic, TypeVar
 
@@ -15,9 +14,10 @@ from rockflex.study import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 MAX_STUDIES = 40  # studies that are remembered
-MAX_FILES = 8  # files, until they are handed out
+MAX_FILES = 8  # files, until they have arrived
 MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
-MAX_WAITING = 12  # jobs of a kind that may wait or run at the same time
+MAX_OWN = 12  # jobs of a kind that may wait or run at the same time for one visitor
+MAX_WAITING = 60  # for all of them
 ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because its page was closed
 
 
@@ -66,6 +66,9 @@ class BackgroundWork:
         """Compute the result, and call `check_interruption` often."""
         raise NotImplementedError
 
+    def forget(self) -> None:
+        """Drop what takes much memory, because it is no longer wanted."""
+
     def _unwanted(self) -> bool:
         return self.cancelled.is_set() or monotonic() - self.seen > ABANDONED_AFTER
 
@@ -110,6 +113,10 @@ class BackgroundFileJob(BackgroundWork):
         check_interruption()
         self.file = made
 
+    def forget(self) -> None:
+        """Drop the file, which has arrived."""
+        self.file = None
+
     def _report(self, done: int, total: int) -> None:
         check_interruption()
         self.done, self.total = done, total
@@ -120,6 +127,8 @@ AnyWork = TypeVar("AnyWork", bound=BackgroundWork)
 
 class BackgroundJobs(Generic[AnyWork]):
     """Jobs by token, which cannot be guessed. Few run at a time, so that a core is free for answers.
+
+    The next one is of the visitor whose last one began longest ago, so that nobody waits for all jobs of another.
 
     Parameters
     ----------
@@ -134,31 +143,38 @@ class BackgroundJobs(Generic[AnyWork]):
     def __init__(self, what: str, kept: int, at_once: int = 1) -> None:
         self._what, self._kept, self._at_once = what, kept, at_once
         self._jobs: OrderedDict[str, AnyWork] = OrderedDict()
-        self._lock = Lock()
-        self._queue: SimpleQueue[AnyWork | None] = SimpleQueue()
+        self._changed = Condition()
+        self._queues: OrderedDict[str, list[AnyWork]] = OrderedDict()  # by visitor, who is next first
+        self._owners: dict[str, str] = {}
         self._threads: list[Thread] = []
+        self._closed = False
 
-    def start(self, job: AnyWork) -> str:
+    def start(self, job: AnyWork, visitor: str = "") -> str:
         """Queue a job, and return its token."""
-        with self._lock:
-            if sum(not each.over for each in self._jobs.values()) >= MAX_WAITING:
+        with self._changed:
+            active = [token for token, each in self._jobs.items() if not each.over]
+            if sum(self._owners[token] == visitor for token in active) >= MAX_OWN:
+                message = f"{MAX_OWN} {self._what} of yours wait or run already. Wait for one of them, or cancel it."
+                raise Refusal(message, 503)
+            if len(active) >= MAX_WAITING:
                 raise Refusal(f"The server is busy with other {self._what}. Try again in a minute.", 503)
             token = secrets.token_urlsafe(18)
-            self._jobs[token] = job
+            self._jobs[token], self._owners[token] = job, visitor
             while len(self._jobs) > self._kept:
                 old = next((key for key, each in self._jobs.items() if each.over), None)
                 if old is None:
                     break
-                del self._jobs[old]
+                del self._jobs[old], self._owners[old]
             if len(self._threads) < self._at_once:  # daemons: what cannot be interrupted does not keep the server up
                 self._threads.append(Thread(target=self._run, name=self._what, daemon=True))
                 self._threads[-1].start()
-        self._queue.put(job)
+            self._queues.setdefault(visitor, []).append(job)
+            self._changed.notify()
         return token
 
     def get(self, token: str) -> AnyWork:
         """Return a job, and record that its page is still open."""
-        with self._lock:
+        with self._changed:
             job = self._jobs.get(token)
         if job is None:
             raise Refusal(f"The server does not have these {self._what} (any more). Start again.", 404)
@@ -166,20 +182,35 @@ class BackgroundJobs(Generic[AnyWork]):
         return job
 
     def cancel(self, token: str) -> None:
-        """Stop a job; completed chunks remain available."""
+        """Stop a job; completed chunks remain available, but not the file of one that is done."""
         job = self.get(token)
         job.cancelled.set()
+        job.forget()
         if job.status == "waiting":
             job.status = "cancelled"
 
     def close(self) -> None:
         """Stop all jobs."""
-        with self._lock:
+        with self._changed:
             for job in self._jobs.values():
                 job.cancelled.set()
-        for _ in self._threads:
-            self._queue.put(None)
+            self._closed = True
+            self._changed.notify_all()
 
     def _run(self) -> None:
-        while (job := self._queue.get()) is not None:
+        while (job := self._next()) is not None:
             job.compute()
+
+    def _next(self) -> AnyWork | None:
+        """Wait for a job; None at the end of the server."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._closed or any(self._queues.values()))
+            if self._closed:
+                return None
+            visitor = next(each for each, jobs in self._queues.items() if jobs)
+            job = self._queues[visitor].pop(0)
+            self._queues.move_to_end(visitor)
+            if len(self._queues) > self._kept:  # visitors without a job, who began longest ago
+                for each in [each for each, jobs in self._queues.items() if not jobs][: -self._kept]:
+                    del self._queues[each]
+            return job

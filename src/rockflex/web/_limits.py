@@ -43,9 +43,11 @@ MAX_MODELS = 4  # at once
 MAX_STUDY_RUNS = 20_000  # of a study
 MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.CostModel`)
 RUN_WORK_LIMIT = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
+MAX_RUN_STATES = 500_000  # time steps of a run whose history is kept, free vibration included: some 500 MB of curves
 MAX_ANSWER_COST = 3.0  # s of estimated computing time of the runs of one answer
 MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
 MAX_SET_SAMPLES = 600_000  # of all records of a set, whose histories are kept
+MAX_SET_STATES = 2_000_000  # of the same with their free vibrations
 
 MAX_NUMBER = 1e15
 
@@ -151,6 +153,13 @@ def check_work_of_runs(cases: Sequence[PreparedCase], motion: GroundMotion) -> N
 
 def _checked_work_of_run(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
+    if task.history and (states := _states_of_run(task)) > MAX_RUN_STATES:
+        message = (
+            f"{task.model.label} over {states:.3g} time steps of {task.dt:g} s, free vibration included, takes too "
+            f"much memory for a page, which keeps {MAX_RUN_STATES} at most. Give a record with a longer time step, or "
+            "less free vibration."
+        )
+        raise Refusal({path: message})
     work = task.work().total
     if work > MAX_RUN_COST:
         modes = number_with_noun(task.cost_model.modes, "mode")
@@ -162,11 +171,17 @@ def _checked_work_of_run(task: Task, path: str) -> float:
     return work
 
 
+def _states_of_run(task: Task) -> float:
+    """Return the number of time steps of a run, free vibration included."""
+    return task.record.size + (task.free_vibration or 0.0) / task.dt
+
+
 def check_size_of_set(case: PreparedCase, motions: Sequence[GroundMotion], path: str) -> None:
     """Refuse a set of records whose runs take too long, individually or together, or whose histories take too much."""
-    work = sum(_checked_work_of_run(case.task(motion), path) for motion in motions)
+    tasks = [case.task(motion) for motion in motions]
+    work, states = sum(_checked_work_of_run(task, path) for task in tasks), sum(map(_states_of_run, tasks))
     samples = sum(motion.acceleration.size for motion in motions)
-    if work > MAX_STUDY_COST or samples > MAX_SET_SAMPLES:
+    if work > MAX_STUDY_COST or samples > MAX_SET_SAMPLES or states > MAX_SET_STATES:
         message = (
             f"{len(motions)} records with {samples} samples are too many for a page, which keeps all histories. Choose "
             "fewer records or a model with fewer modes, or use rockflex check."

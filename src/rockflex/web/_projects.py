@@ -1,13 +1,14 @@
 """Projects on the page: its structures, record and alternatives in one file, and the forms of such a file."""
 
-import io
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rockflex._archives import ArchiveLimits, archive_bytes
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
-from rockflex.project._archive import ArchiveLimits, archive_bytes, unpacked_members
+from rockflex.motion import GroundMotion
+from rockflex.project._archive import unpacked_members
 from rockflex.project._project_file import (
     PAGE,
     ProjectDocument,
@@ -18,7 +19,7 @@ from rockflex.project._project_file import (
     structure_keys,
 )
 from rockflex.web._alternatives import project_of_state
-from rockflex.web._folders import ZIP_ENTRY, SentRecordFile, flat_file_names, read_record_folder
+from rockflex.web._folders import RecordFolder, SentRecordFile, flat_file_names, read_record_folder
 from rockflex.web._limits import (
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,
@@ -32,7 +33,7 @@ from rockflex.web._uploads import UploadedRecords
 
 FIELD = "project"  # of the messages
 SETTLES = f"free vibration until the structure is at rest (here {MAX_FREE_VIBRATION:g} s)"
-LIMITS = ArchiveLimits(MAX_FOLDER_FILES, MAX_FILE_BYTES, MAX_FOLDER_BYTES, MAX_TOML_BYTES)
+LIMITS = ArchiveLimits(MAX_FOLDER_FILES, MAX_FILE_BYTES, MAX_FOLDER_BYTES)
 
 
 def project_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
@@ -46,15 +47,22 @@ def _json(state: PageState) -> str:
     return json.dumps(as_json_value(state.model_dump(exclude_none=True)))
 
 
+Records = tuple[Mapping[str, GroundMotion], Mapping[str, RecordFolder]]
+
+
+def read_project(content: bytes) -> tuple[dict[str, Any], Records]:
+    """Return the answer about a project's file, and the records in it, which `UploadedRecords.take` stores."""
+    uploads = UploadedRecords()
+    return state_of_project(content, uploads), uploads.items()
+
+
 def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]:
     """Return the state of the page in a project's file, and what of it the page has no place for.
 
     Results are not read, and no structure is built before its numbers are checked as those of a form.
     """
-    if content.count(ZIP_ENTRY) > 2 * MAX_FOLDER_FILES:  # opening it would take an object for each
-        raise Refusal({FIELD: f"it holds more than {MAX_FOLDER_FILES} files, which is more than the page takes."})
     try:
-        members = unpacked_members(io.BytesIO(content), "given", "project", LIMITS)
+        members = unpacked_members(content, "given", "project", LIMITS, MAX_TOML_BYTES)
         document = project_document(members)
         if PAGE in members:
             state = parse_page_state(parse_page_json(members[PAGE]))

@@ -13,6 +13,7 @@ from rockflex._errors import InputError
 from rockflex._json import as_json_value
 from rockflex._language import translated
 from rockflex.modal import PLACE, Ground, Pivot, RockingProperties, adequacy, uplifted_modes
+from rockflex.solve import check_interruption
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure._outline import StructureOutline, structure_outline
@@ -120,13 +121,17 @@ def _build_structure_from_json(text: str) -> BuiltStructure:
 
 def structure_view(entry: StructureEntry, table: GroundTable | None = None, *, quick: bool = False) -> dict[str, Any]:
     """Return the outline of a structure and the ground under it; not `quick`, its parameters and modes as well."""
+    check_interruption()
     built = build_page_structure(entry)
     p = built.properties
     drawn = structure_outline_view(entry, built, ground_under_page_structure(table, p))
     if quick:
         return as_json_value(drawn)
     with errors_as_refusals("structure"):
-        modes, judged = _mode_facts(built), _mode_adequacy_view(entry, p)
+        check_interruption()
+        modes = _mode_facts(built)
+        check_interruption()
+        judged = _mode_adequacy_view(entry, p)
     return as_json_value(
         {
             **drawn,

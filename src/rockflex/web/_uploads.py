@@ -3,9 +3,8 @@
 import hashlib
 import io
 import re
-import zipfile
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,19 +13,21 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from rockflex._archives import ArchiveLimits, array_from_npy, npy_shape_and_type, open_archive
 from rockflex._errors import InputError
 from rockflex.motion import (
     GroundMotion,
     is_vertical_component,
     read_motion_without_obspy,
 )
-from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile
+from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile, read_record_folder, unpacked_record_files
 from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_RECORDS = 64  # in memory
 MAX_NAME = 60  # characters of the name under which a file is stored while it is read
 MATRICES = ("mass", "stiffness", "heights", "rotations")
+MATRICES_LIMITS = ArchiveLimits(100, MAX_FILE_BYTES, 4 * MAX_FILE_BYTES)
 
 
 Cached = TypeVar("Cached")
@@ -63,12 +64,33 @@ class LatestValuesCache(Generic[Cached]):
                 self._values.move_to_end(key)
         return value
 
+    def items(self) -> dict[str, Cached]:
+        """Return all values by their keys."""
+        with self._lock:
+            return dict(self._values)
+
 
 FOLDER_LOST = (
     "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
     "the Earthquake tab; a link does not contain it."
 )
 NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
+
+
+def checksum_of_files(files: Sequence[SentRecordFile], options: str) -> str:
+    """Return the SHA-256 of the names and the contents of files, whatever their order, and of how they are read."""
+    digest = hashlib.sha256(options.encode())
+    for each in sorted(files, key=lambda file: file.name):
+        content = each.content or b""
+        digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def read_sent_folder(body: bytes, units: str | None, dt: float | None) -> tuple[str, RecordFolder]:
+    """Return the checksum of the files in a request, and their records."""
+    files = unpacked_record_files(body)
+    return checksum_of_files(files, f"{units} {dt}"), read_record_folder(files, units, dt)
 
 
 class RecordFolders:
@@ -82,14 +104,17 @@ class RecordFolders:
 
     def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
         """Keep a set, and return its checksum."""
-        digest = hashlib.sha256(options.encode())
-        for each in sorted(files, key=lambda file: file.name):
-            content = each.content or b""
-            digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
-            digest.update(content)
-        token = digest.hexdigest()
-        self._folders.put(token, folder)
+        token = checksum_of_files(files, options)
+        self.put(token, folder)
         return token
+
+    def put(self, token: str, folder: RecordFolder) -> None:
+        """Keep a set under its checksum."""
+        self._folders.put(token, folder)
+
+    def items(self) -> dict[str, RecordFolder]:
+        """Return all sets by their checksums."""
+        return self._folders.items()
 
     def get(self, token: str) -> RecordFolder:
         """Return a set."""
@@ -114,6 +139,17 @@ class UploadedRecords:
         key = hashlib.sha256(content + b"\0" + options.encode()).hexdigest()
         self._records.put(key, motion)
         return key
+
+    def items(self) -> tuple[dict[str, GroundMotion], dict[str, RecordFolder]]:
+        """Return all records and sets of records by their checksums."""
+        return self._records.items(), self.folders.items()
+
+    def take(self, given: tuple[Mapping[str, GroundMotion], Mapping[str, RecordFolder]]) -> None:
+        """Store what the `items` of another one are."""
+        for key, motion in given[0].items():
+            self._records.put(key, motion)
+        for token, folder in given[1].items():
+            self.folders.put(token, folder)
 
     def get(self, key: str) -> GroundMotion:
         """Return a record."""
@@ -227,23 +263,21 @@ def _matrix_from_text(text: str) -> Any:
 
 def _matrices_from_npz(name: str, content: bytes) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+    # A header may claim an array of any size, so it is read before any memory is allocated.
+    with open_archive(content, MATRICES_LIMITS) as archive:
+        members = {each.filename: each for each in archive.entries}
         for part in MATRICES:
-            if f"{part}.npy" not in archive.namelist():
+            if f"{part}.npy" not in members:
                 continue
-            # A header may claim an array of any size, so it is read before any memory is allocated.
-            with archive.open(f"{part}.npy") as file:
-                version = np.lib.format.read_magic(file)
-                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                shape, _, kind = read(file)
+            packed = archive.read(members[f"{part}.npy"])
+            shape, kind = npy_shape_and_type(packed)
             if kind.kind not in "fiu" or len(shape) > 2 or max(shape, default=0) > MAX_FREEDOMS:
                 message = (
                     f"{name}: {part} is an array {shape} of {kind}, but numbers for up to {MAX_FREEDOMS} freedoms are "
                     "expected."
                 )
                 raise Refusal({"structure": message})
-            with archive.open(f"{part}.npy") as file:
-                found[part] = _matrix_as_numbers(name, part, np.lib.format.read_array(file, allow_pickle=False))
+            found[part] = _matrix_as_numbers(name, part, array_from_npy(packed))
     if "stiffness" not in found:
         message = f"{name} must hold the arrays mass, stiffness and heights, but it holds no stiffness."
         raise Refusal({"structure": message})

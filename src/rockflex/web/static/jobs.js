@@ -225,7 +225,10 @@ export function downloads(app, files, path = (what) => `/api/file/${what}`) {
         if (answer.total) bar.value = answer.done / answer.total;
         if (!row.hidden || !goes(answer)) say(answer);
         if (answer.status === "failed") app.complain(root, answer.errors);
-        if (answer.status === "done") save(...(await file(`/api/file/${token}/content`)));
+        if (answer.status === "done") {
+          save(...(await file(`/api/file/${token}/content`)));
+          await attempt(() => drop(`/api/file/${token}`), () => {}); // it has arrived
+        }
         if (!goes(answer)) return;
         await new Promise((resolve) => setTimeout(resolve, wait));
       }
