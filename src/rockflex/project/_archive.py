@@ -62,7 +62,7 @@ def unpacked_members(file: Path | BinaryIO, name: str, kind: str, most: ArchiveL
     """
     try:
         with zipfile.ZipFile(file) as archive:
-            entries = [each for each in archive.infolist() if not each.is_dir()]
+            entries = [each for each in archive.infolist() if not each.filename.endswith("/")]
             _check_entries(name, kind, entries, most)
             found = dict[str, bytes]()
             for each in entries:

@@ -109,7 +109,7 @@ def _files_in_archive(path: str, content: bytes, room: int) -> Iterator[tuple[st
         )
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            entries = [each for each in archive.infolist() if not each.is_dir()]
+            entries = [each for each in archive.infolist() if not each.filename.endswith("/")]
             if len(entries) > MAX_FOLDER_FILES:
                 raise _folder_refusal(
                     f"{shown} holds {len(entries)} files, but the page takes {MAX_FOLDER_FILES} at most. Pack fewer."
