@@ -60,7 +60,7 @@ class OpenArchive:
     """
 
     def __init__(self, archive: zipfile.ZipFile, most: ArchiveLimits) -> None:
-        self.entries = [each for each in archive.infolist() if not each.is_dir()]
+        self.entries = [each for each in archive.infolist() if not each.filename.endswith("/")]
         self._archive, self._most, self._unpacked = archive, most, 0
 
     def read(self, entry: zipfile.ZipInfo) -> bytes:

@@ -1,6 +1,8 @@
 """The errors that calls raise, and the warning about records that are left out."""
 
-from rockflex._shown import shortened
+import errno
+
+from rockflex._shown import path_shown, shortened
 
 LONGEST = 1900  # most characters of a message, which may quote paths and texts of any length
 
@@ -37,3 +39,28 @@ class SolverError(RuntimeError):
 
 class RecordWarning(UserWarning):
     """Records were left out of a suite, or a header contradicts its samples; the message says which, and why."""
+
+
+_REMEDIES = {
+    errno.ENOENT: "Check its spelling; relative paths start from the current folder.",
+    errno.EACCES: "Give one that you may use, or have its rights changed.",
+    errno.EPERM: "Give one that you may use, or have its rights changed.",
+    errno.ENAMETOOLONG: "Give a shorter one.",
+    errno.ENOSPC: "Make room, or give another place.",
+    errno.EDQUOT: "Make room, or give another place.",
+    errno.EROFS: "Give a place that can be written to.",
+    errno.EISDIR: "Give a file.",
+    errno.ENOTDIR: "A part of it is a file, not a folder; give another one.",
+    errno.ELOOP: "Links lead in a circle; give the file itself.",
+}
+
+
+def system_error_text(error: OSError | UnicodeError) -> str:
+    """Say what the system refused, with the path as it can be printed, and how to mend it."""
+    if isinstance(error, UnicodeError):
+        given = getattr(error, "object", "")
+        what = path_shown(given) if given else str(error)
+        return f"A name or a text is not UTF-8, as is expected: {what}. Rename the file, or save the text as UTF-8."
+    path = path_shown(error.filename) if error.filename else ""
+    remedy = _REMEDIES.get(error.errno or 0, "Check the path and the disk, and try again.")
+    return f"{path}{': ' * bool(path)}{error.strerror or error}. {remedy}"

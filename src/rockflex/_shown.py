@@ -1,6 +1,7 @@
 """Given values as quoted in messages: in full if short, and never longer than a line or two."""
 
 import math
+import os
 import reprlib
 from collections.abc import Sequence
 from itertools import islice
@@ -18,6 +19,15 @@ def shortened(text: str, most: int = WIDTH) -> str:
     """Return `text`, without the middle part if it is longer than `most` characters."""
     half = most // 2 - 3
     return text if len(text) <= most else f"{text[:half]} ... {text[-half:]}"
+
+
+def path_shown(path: object) -> str:
+    """Return a path as text that can be printed: bytes that are not UTF-8 as escapes, and without a long middle."""
+    try:
+        content = os.fsencode(path) if isinstance(path, str | bytes | os.PathLike) else str(path).encode()
+    except UnicodeEncodeError:
+        content = str(path).encode("utf-8", "backslashreplace")
+    return shortened(content.decode("utf-8", "backslashreplace"))
 
 
 def few_texts_shown(texts: Sequence[str]) -> str:

@@ -80,7 +80,6 @@ HOME = {
     "IPython": {"study.progress"},
     "distributed": {"study.parallel", "study._dask_worker"},
     "dask": {"study.parallel"},
-    "filelock": {"study"},
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},

@@ -233,7 +233,7 @@ def test_module_and_version():
 
 def test_entry_point_is_main():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    assert project["scripts"]["rockflex"] == "rockflex.cli:main"
+    assert project["scripts"]["rockflex"] == "rockflex.__main__:main"
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import pickle
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -448,6 +449,21 @@ def test_a_part_that_is_lost_is_computed_anew(study, folder, tmp_path, monkeypat
     pd.testing.assert_frame_equal(rf.run_study(study, tmp_path / "kept"), table)
     assert computed == [0, n_chunks - 1]
     assert parts(tmp_path / "kept") == parts(whole)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "damage", [lambda content: content[:-9], lambda _: b"", lambda content: content[:99] + b"!" * 9]
+)
+def test_every_damaged_part_is_computed_anew(study, folder, tmp_path, damage):
+    whole, table = folder
+    shutil.copytree(whole, tmp_path / "kept")
+    names = sorted(parts(whole))
+    for name in names:
+        path = tmp_path / "kept" / "parts" / name
+        path.write_bytes(damage(path.read_bytes()))
+        pd.testing.assert_frame_equal(rf.run_study(study, tmp_path / "kept"), table)
+        assert parts(tmp_path / "kept") == parts(whole)
 
 
 def test_designs_without_a_search_are_the_same_documents_as_before():

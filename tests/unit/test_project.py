@@ -56,7 +56,7 @@ def rewritten(file, changed=None, removed=(), **options):
         members = {name: archive.read(name) for name in archive.namelist() if name not in removed}
     with zipfile.ZipFile(file, "w", **options) as archive:
         for name, content in (members | (changed or {})).items():
-            archive.writestr(name, content)
+            archive.writestr(name or zipfile.ZipInfo(name), content)
     return file
 
 
@@ -324,7 +324,7 @@ def test_deep_nesting_is_refused(file, member):
             rf.read_project(file)
 
 
-@pytest.mark.parametrize("name", ["../evil.toml", "/etc/passwd", "a/b/c.toml", "C:\\a.toml", "records/.."])
+@pytest.mark.parametrize("name", ["../evil.toml", "/etc/passwd", "a/b/c.toml", "C:\\a.toml", "records/..", ""])
 def test_names_that_point_elsewhere_are_refused(file, name):
     rewritten(file, {name: b"1"})
     with pytest.raises(rf.InputError, match="no plain name"):

@@ -89,24 +89,84 @@ def test_the_lock_of_another_host_stands(tmp_path: Path) -> None:
         locked_folder(path)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    "content", ["{", '{"pid": 1, "start": "", "host": "h", "since": "noon"}']
-)  # of earlier versions
-def test_an_unreadable_lock_is_given_a_moment(tmp_path: Path, content: str) -> None:
-    path = tmp_path / "lock"
-    path.write_text(content)
+    "content", ["", "{", "12", f"{os.getpid()}", f"{os.getpid()}\nhalf a na", "\0" * 40, "0\nhost\n"]
+)
+def test_a_lock_without_a_name_is_taken_over_at_once(tmp_path: Path, content: str) -> None:
+    (tmp_path / "lock").write_text(content)  # of a process that was killed before it could write
     begin = time.monotonic()
-    lock = locked_folder(path)
-    assert 1.0 < time.monotonic() - begin < _lock.PATIENCE
-    lock.release()
+    with opened(str(tmp_path), PLAN) as study:
+        assert lock_holder(tmp_path / "lock").startswith(f"process {os.getpid()} on ")
+        study.write(0, PLAN.chunk(0))
+    assert time.monotonic() - begin < 1.0
+    assert not (tmp_path / "lock").exists()
 
 
-def test_an_empty_lock_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_lock, "PATIENCE", 0.1)
-    (tmp_path / "lock").touch()  # of a process that was killed before it could write
-    with pytest.raises(InputError, match="in use by a process that left no name"):
+def test_the_number_of_a_dead_process_may_be_that_of_another_one(tmp_path: Path) -> None:
+    path = tmp_path / "lock"
+    path.write_text(lock_of(os.getpid()))  # of a container, whose first process has the number 1 each time
+    assert lock_holder(path) is None
+    locked_folder(path).release()
+
+
+def test_a_lock_that_lost_its_name_is_not_taken_from_a_process_that_runs(tmp_path: Path) -> None:
+    with opened(str(tmp_path), PLAN) as study:
+        os.truncate(tmp_path / "lock", 0)
+        with pytest.raises(InputError, match="in use by a process that left no name"):
+            opened(str(tmp_path), PLAN)
+        study.write(0, PLAN.chunk(0))
+
+
+def test_without_locks_of_the_system_a_file_without_a_name_is_given_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_lock, "_lock_file", lambda *_, **__: None)
+    path = tmp_path / "lock"
+    path.touch()
+    with pytest.raises(InputError, match=r"no name .* taken over 60 s after its last change"):
+        locked_folder(path)
+    os.utime(path, (time.time() - 70.0,) * 2)
+    locked_folder(path).release()
+    path.write_text(lock_of(os.getpid()))
+    with pytest.raises(InputError, match=f"in use by process {os.getpid()} on"):
+        locked_folder(path)
+    path.write_text(lock_of(dead_pid()))
+    locked_folder(path).release()
+
+
+def test_without_hard_links_a_lock_is_made_as_well(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> None:
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr(os, "link", refused)
+    with opened(str(tmp_path), PLAN), pytest.raises(InputError, match=f"in use by process {os.getpid()} on"):
         opened(str(tmp_path), PLAN)
+    assert not (tmp_path / "lock").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_killed_process_leaves_a_named_lock_or_none(tmp_path: Path) -> None:
+    """At every system call of the taking: the next process gets the folder, and no temporary file stays."""
+    program = (
+        "import os, sys, signal\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import locked_folder\n"
+        "left = int(sys.argv[2])\n"
+        "def count(event, _):\n"
+        "    global left\n"
+        "    if event in ('open', 'os.link', 'os.remove', 'fcntl.flock'):\n"
+        "        left -= 1\n"
+        "        if left < 0: os.kill(os.getpid(), signal.SIGKILL)\n"
+        "sys.addaudithook(count)\nlocked_folder(Path(sys.argv[1]))\nos._exit(0)"
+    )
+    path = tmp_path / "lock"
+    codes: list[int] = []
+    for calls in range(7):
+        done = subprocess.run([sys.executable, "-c", program, str(path), str(calls)], check=False)
+        codes.append(done.returncode)
+        assert not path.exists() or path.read_text() != ""
+        locked_folder(path).release()
+        assert list(tmp_path.iterdir()) == []
+    assert set(codes) == {-signal.SIGKILL, 0}
 
 
 @pytest.mark.slow

@@ -301,6 +301,7 @@ def changed(structure=None, **variables):
         (changed(height={"whole": [3.0, 2.5]}), "whole must be a list of the smallest and the largest of equally"),
         (changed(height={"lognormal": [0.0, 0.1]}), "lognormal must begin with a positive number, but [0.0, 0.1] was"),
         (changed(height={"log_uniform": [-1.0, 1.0]}), "log_uniform must begin with a positive number, but"),
+        (changed(height={"lognormal": [2e5, 4e4]}), "standard deviation of the logarithm, at most 10, but"),
         (changed(height={"normal": [1.0, -0.1]}), "normal must end with a standard deviation, but -0.1 is negative."),
         (changed(height={"one_of": []}), "one_of must be a list of one number or more, but [] was given."),
         (changed(height={"one_of": [math.nan]}), "one_of must be a list of one number or more, but [nan] was given."),

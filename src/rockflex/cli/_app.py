@@ -1,5 +1,7 @@
 """The application: its commands, its version and its exit codes."""
 
+import os
+import signal
 import sys
 from contextlib import suppress
 from contextvars import copy_context
@@ -9,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from rockflex import __version__
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError, SolverError, system_error_text
 from rockflex.cli import _animate, _check, _compare, _modes, _motion, _project, _reproduce, _run, _select, _study
 from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
@@ -86,6 +88,11 @@ class RockflexCommands(TyperGroup):
         except (InputError, SolverError) as error:
             console.print_error(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
+        except (OSError, UnicodeError) as error:
+            if isinstance(error, BrokenPipeError):  # its reader has had enough, such as head
+                raise
+            console.print_error(system_error_text(error))
+            raise typer.Exit(2) from error
         except KeyboardInterrupt as stop:
             console.print_remark("Stopped; nothing was written.")
             raise typer.Exit(130) from stop
@@ -140,4 +147,35 @@ def main() -> None:
         # A terminal without Greek letters shows question marks instead of a traceback.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
-    app(prog_name="rockflex")
+    with suppress(ValueError):  # outside the main thread
+        if signal.getsignal(signal.SIGTERM) == signal.SIG_DFL:
+            signal.signal(signal.SIGTERM, _stop)
+    code: Any = 0
+    try:
+        app(prog_name="rockflex")
+    except SystemExit as end:
+        code = end.code
+    raise SystemExit(_flushed(code))
+
+
+def _stop(*_: object) -> None:
+    """End like Ctrl-C, so that temporary files go and locks are released."""
+    raise KeyboardInterrupt
+
+
+def _flushed(code: Any) -> Any:
+    """Write what is left for stdout; return the exit code, which tells if that cannot be done."""
+    out = sys.stdout
+    try:
+        out.flush()
+    except AttributeError:  # closed from the start
+        return code
+    except OSError as error:
+        with suppress(OSError, ValueError):  # what is left would be tried again when Python ends
+            os.dup2(os.open(os.devnull, os.O_WRONLY), out.fileno())
+        if isinstance(error, BrokenPipeError):
+            return code
+        if code == 0:
+            console.print_error(f"The output: {system_error_text(error)}")
+        return code or 2
+    return code

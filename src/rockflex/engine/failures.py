@@ -8,9 +8,13 @@ from rockflex._errors import InputError, SolverError
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError
 
 
-def missing_vector_level_error(level: str) -> ImportError:
+class VectorLevelError(InputError, ImportError):
+    """The level of vector instructions asked for is not there."""
+
+
+def missing_vector_level_error(level: str) -> VectorLevelError:
     """The processor lacks a level of vector instructions."""
-    return ImportError(
+    return VectorLevelError(
         f"ROCKFLEX_SIMD={level!r} is not a level of vector instructions that this processor has. Give 'baseline', "
         "'v3' (AVX2) or 'v4' (AVX-512), or leave it out for the best one."
     )

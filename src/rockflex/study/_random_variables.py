@@ -112,6 +112,9 @@ def _formula_node_value(node: ast.expr, values: Mapping[str, float]) -> Any:
 _BITS = 52  # of a draw, which is the middle of one of 2**52 parts of (0, 1)
 
 
+MAX_LOG_SPREAD = 10.0  # of a lognormal variable; draws then still span 70 powers of ten
+
+
 class DistributionTable(TomlTable):
     """The distribution of a variable: one of these keys."""
 
@@ -151,6 +154,12 @@ class DistributionTable(TomlTable):
         if name in ("normal", "lognormal"):
             if second < 0.0:
                 raise InputError(f"{name} must end with a standard deviation, but {second:g} is negative.")
+            if name == "lognormal" and second > MAX_LOG_SPREAD:
+                raise InputError(
+                    f"lognormal must end with the standard deviation of the logarithm, at most {MAX_LOG_SPREAD:g}, but "
+                    f"{shown(numbers)} was given. For a mean m and a standard deviation s it is √(ln(1 + (s/m)²)), "
+                    "about s/m."
+                )
         elif first > second:
             raise InputError(
                 f"{name} must be a range whose first number is the smaller, but {shown(numbers)} was given."

@@ -101,7 +101,9 @@ def fill_folder(
             return part.rows
 
         def so_far() -> "pd.DataFrame":
-            return tables_to_dataframe(target.table(partial=True))
+            # Damaged parts of later rounds are computed anew in their turn.
+            parts = (target.part(number) for number in range(target.n_chunks))
+            return tables_to_dataframe(*(part for part in parts if part is not None))
 
         def stored(plan: ChunkedPlan) -> _StudyPartPlan:
             return _StudyPartPlan(plan, target.maker)

@@ -18,7 +18,7 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path, remove_temporary_files, write_file_atomically
 from rockflex._html import html_table
 from rockflex._shown import few_texts_shown, number_with_noun, shortened, shown
-from rockflex.study.folders._lock import LOCK, check_folder_locked, lock_holder, locked_folder
+from rockflex.study.folders._lock import LOCK, FolderLock, check_folder_locked, lock_holder, locked_folder
 from rockflex.study.folders._manifest import MANIFEST, SPEC, StudyManifest, listed_differences
 from rockflex.study.folders._parts import (
     PARTS,
@@ -33,7 +33,6 @@ from rockflex.study.folders._parts import (
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
-    from filelock import SoftFileLock
 
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -223,7 +222,7 @@ class StudyFolder:
 
     path: Path
     manifest: StudyManifest
-    lock: "SoftFileLock | None" = None
+    lock: FolderLock | None = None
     _known: "dict[int, pa.Schema]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
