@@ -53,7 +53,7 @@ class _Reader:
             raise Refusal("The server could not start to read the file. Try again.", 503) from error
 
     def read(self, work: tuple[Any, ...], seconds: float) -> tuple[str, Any]:
-        """Return how it ended ("done", "refused", "unusable", "failed", "ended", "late"), and what the work returned."""
+        """Return how it ended ("done", "refused", "unusable", "failed", "ended" or "late"), and what it returned."""
         over, late, asked, begun = Event(), Event(), asked_to_stop(), monotonic()
 
         def watch() -> None:
