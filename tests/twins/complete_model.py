@@ -136,6 +136,10 @@ class CompleteModel:
             moment += (rope.force + rope.stiffness * chord) * lever
         return force, side * moment
 
+    def holding(self, turn: float, spin: float, side: int) -> float:
+        """Moment about the pivot of what is stretched by the rotation, against θ."""
+        return self.pull(turn, side)[1]
+
     def overturning(self, y: Vector, a: Ground) -> Vector:
         """The moment that lifts the base, to θ > 0 below -`resisting(1)` and to θ < 0 above `resisting(-1)`.
 
@@ -185,7 +189,7 @@ class CompleteModel:
             moment = g * (along * sin - across * cos) - a * (along * cos + across * sin)
             moment -= 2.0 * spin * float(v @ (m * beyond))
             modes = self.free(y, a * cos - g * sin) + spin**2 * beyond
-        moment -= self.pull(turn, side)[1]
+        moment -= self.holding(turn, spin, side)
         # The modal rows say D'' = modes - h* θ''; put into the row of θ:
         rotation = (moment - float(self.arm @ modes)) / (self.inertia(d, side) - self.arm_inertia)
         return rotation, modes - p.effective_height * rotation

@@ -5,8 +5,8 @@ it is stretched by the chord 2 r sin(|θ|/2), and its moment follows from its vi
 the stretch is r |θ|.
 """
 
+import math
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,14 +36,14 @@ class ControlledModel(CompleteModel):
         """Distance from the pivot towards the base; negative beyond the pivot."""
         return side * (self.structure.edge(side) - element.position)
 
-    def stretch(self, element: Bar | Dashpot, turn: Vector | float, side: int) -> Vector:
-        size = side * np.asarray(turn)
-        return self.reach(element, side) * (2.0 * np.sin(0.5 * size) if self.complete else size)
+    def stretch(self, element: Bar | Dashpot, turn: Vector | float, side: int) -> Vector | float:
+        size, sin = side * turn, math.sin if isinstance(turn, float) else np.sin
+        return self.reach(element, side) * (2.0 * sin(0.5 * size) if self.complete else size)
 
-    def lever(self, element: Bar | Dashpot, turn: Vector | float, side: int) -> Vector:
+    def lever(self, element: Bar | Dashpot, turn: Vector | float, side: int) -> Vector | float:
         """dδ/dθ."""
-        flat = np.cos(0.5 * np.asarray(turn)) if self.complete else 1.0
-        return side * self.reach(element, side) * flat
+        cos = math.cos if isinstance(turn, float) else np.cos
+        return side * self.reach(element, side) * (cos(0.5 * turn) if self.complete else 1.0)
 
     def tension(self, element: Bar | Dashpot, turn: float, spin: float, side: int) -> float:
         k, c, force = element.tangent()
@@ -54,13 +54,8 @@ class ControlledModel(CompleteModel):
     def resisting(self, side: int, g: Vector | float = GRAVITY) -> Vector | float:
         return super().resisting(side, g) + sum(each.tangent()[2] * self.reach(each, side) for each in self.elements)
 
-    def accelerations(self, y: Vector, a: float, side: int) -> tuple[float, Vector]:
-        rotation, modes = super().accelerations(y, a, side)
-        if side == 0:
-            return rotation, modes
-        moment = -sum(self.tension(each, y[0], y[1], side) * self.lever(each, y[0], side) for each in self.elements)
-        left = self.inertia(self.modal(y)[0], side) - self.arm @ self.structure.effective_height
-        return rotation + moment / left, modes - self.structure.effective_height * moment / left
+    def holding(self, turn: float, spin: float, side: int) -> float:
+        return sum(self.tension(each, turn, spin, side) * self.lever(each, turn, side) for each in self.elements)
 
     def pull(self, turn: float, side: int) -> tuple[float, float]:
         return 0.0, 0.0
@@ -99,10 +94,11 @@ class ControlledRun(Run):
 
     def _peaks(self, dense, grid: Vector) -> None:
         super()._peaks(dense, grid)
-        if self.side:
-            for low, high in pairwise(grid):
-                power = [self.model.dissipation(dense(low + (high - low) * u), self.side) for u in PLACES]
-                self.damped += (high - low) * float(WEIGHTS @ power)
+        if self.side and any(isinstance(each, Dashpot) for each in self.model.elements):
+            length = np.diff(grid)
+            states = dense((grid[:-1, None] + length[:, None] * PLACES).ravel())
+            power = self.model.dissipation(states, self.side).reshape(-1, PLACES.size)
+            self.damped += float(length @ power @ WEIGHTS)
 
     def _phase(self, sample: Sample, tau: float) -> tuple[float, str]:
         tau, kind = super()._phase(sample, tau)
