@@ -29,6 +29,7 @@ from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
+from rockflex.web._connections import BoundedBodies
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES
@@ -357,6 +358,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
     middleware = [
         Middleware(SecurityHeaders),
         Middleware(KnownHosts, host=host, names=names),
+        Middleware(BoundedBodies),
         Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3),
     ]
     routes = [

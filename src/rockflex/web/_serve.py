@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 KEEP_ALIVE = 20  # s for the next request on an open connection
+BACKLOG = 128  # connections that wait to be accepted
 GRACE = 3  # s for the answers in progress when the server is stopped
 
 
@@ -40,7 +41,7 @@ def serve(
 ) -> None:
     """Serve the web page until interrupted.
 
-    A client must send the content of a request within 60 s.
+    A client must send the head of a request within 10 s, and its content within 60 s.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def serve(
     Raises
     ------
     InputError
-        If the port cannot be opened.
+        If the port cannot be opened, or the page does not start.
     """
     number = checked_whole_number("port", port, 1, 65535)
     app = make_app(host, names)
@@ -69,18 +70,23 @@ def serve(
 
     import uvicorn
 
+    from rockflex.web._connections import patient_protocol
+
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    # Windows would give a port to several servers, and the others to those of which none listens yet.
+    exclusive = getattr(socket, "SO_EXCLUSIVEADDRUSE", None)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR if exclusive is None else exclusive, 1)
     try:
         listener.bind((host, number))
+        listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
         raise InputError(
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(
-        app, log_level="warning", http="h11", ws="none", timeout_keep_alive=KEEP_ALIVE, limit_concurrency=500,
-        timeout_graceful_shutdown=GRACE, server_header=False,
+        app, log_level="warning", http=patient_protocol(), ws="none", timeout_keep_alive=KEEP_ALIVE,
+        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False,
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
@@ -103,6 +109,8 @@ def serve(
                     Thread(target=webbrowser.open, args=(address,), daemon=True).start()
             while running.is_alive():
                 running.join(0.5)
+            if not server.started:
+                raise InputError("The page did not start; the lines above say why.")
         finally:
             server.should_exit = True
             running.join(GRACE + 2.0)
