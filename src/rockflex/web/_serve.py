@@ -15,7 +15,7 @@ BACKLOG = 128  # connections that wait to be accepted
 GRACE = 3  # s for the answers in progress when the server is stopped
 
 
-def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
+def make_app(host: str = "127.0.0.1", names: Sequence[str] = (), token: str = "") -> "Starlette":
     """Return the page as an ASGI application, for another server.
 
     Parameters
@@ -25,10 +25,12 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
         listens on all addresses ("0.0.0.0" or "::"), to each of them and to the name of the machine.
     names
         Other names by which it is reached, such as that of a server in front of it.
+    token
+        If given, it answers only to those who bring it: ``?token=...`` at the end of the first address.
     """
     from rockflex.web._app import create_page_application
 
-    return create_page_application(host, names)
+    return create_page_application(host, names, token)
 
 
 def serve(
@@ -36,6 +38,8 @@ def serve(
     host: str = "127.0.0.1",
     *,
     names: Sequence[str] = (),
+    token: str = "",
+    root_path: str = "",
     open_browser: bool = False,
     on_start: Callable[[str], object] | None = None,
 ) -> None:
@@ -49,9 +53,11 @@ def serve(
         TCP port.
     host
         Address to listen on; the default accepts only this machine. There are no users and passwords: before opening
-        it to a network, put a server with authentication in front of it.
-    names
+        it to a network, give a `token`, or put a server with authentication in front of it.
+    names, token
         As for `make_app`.
+    root_path
+        The path under which a server in front of it, which removes that path, has the page: ``"/rocking"``.
     open_browser
         Whether to open the page in the browser of this machine.
     on_start
@@ -63,7 +69,7 @@ def serve(
         If the port cannot be opened, or the page does not start.
     """
     number = checked_whole_number("port", port, 1, 65535)
-    app = make_app(host, names)
+    app = make_app(host, names, token)
     import signal
     import socket
     from threading import Thread, current_thread, main_thread
@@ -86,7 +92,7 @@ def serve(
         ) from error
     config = uvicorn.Config(
         app, log_level="warning", http=patient_protocol(), ws="none", timeout_keep_alive=KEEP_ALIVE,
-        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False,
+        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False, root_path=root_path.rstrip("/"),
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
@@ -99,7 +105,7 @@ def serve(
             while running.is_alive() and not server.started:
                 running.join(0.02)
             if server.started:
-                address = page_address(host, number)
+                address = page_address(host, number) + (f"/?token={token}" if token else "")
                 if on_start is not None:
                     on_start(address)
                 if open_browser:

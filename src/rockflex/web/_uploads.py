@@ -215,6 +215,8 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
     except OSError as error:
         raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
     named = replace(motion, name=Path(shown).stem or "record")
+    if motion.metadata is not None and motion.metadata.source == file.name:
+        named = replace(named, metadata=replace(motion.metadata, source=shown))
     check_record_length(named, field)
     return named
 

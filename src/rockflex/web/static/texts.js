@@ -9,7 +9,7 @@ localStorage.setItem(KEPT, language);
 list.addEventListener("change", () => (location.search = `?lang=${list.value}`)); // the state is in the address
 
 // Awaited, so that constants of other modules have their texts. Without it the page is in English.
-const catalogue = language === "en" ? {} : await fetch(`/languages/${language}.json`).then((found) => found.json()).catch(() => ({}));
+const catalogue = language === "en" ? {} : await fetch(new URL(`../languages/${language}.json`, import.meta.url)).then((found) => found.json()).catch(() => ({}));
 
 // A text, with the values of the names in its braces: t("{count} records", { count: 7 }).
 export const t = (text, values = {}) => (catalogue[text] ?? text).replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
