@@ -1,5 +1,6 @@
 """Reports as files of other programs: PDF, printed by a browser, and documents of Word."""
 
+import errno
 import io
 import os
 import re
@@ -19,6 +20,7 @@ from rockflex.report.run._sheet import Drawing, ReportPage
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge")
 BROWSER_VARIABLE = "ROCKFLEX_BROWSER"
 _MAX_SECONDS = 120.0
+_LEAST_ROOM = 1_000_000  # bytes on the disk, below which a print fails for want of them
 _MARGIN, _WIDTH = 12.0, 186.0  # of a sheet of A4 in mm
 _SUBSCRIPT = re.compile(r"(?<=[^\W\d_])(\*?)_([\w*–]+)|\^(−?\d+)")
 
@@ -70,7 +72,7 @@ def page_as_pdf(text: str) -> bytes:
     try:
         running = ProcessWithFolder(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     except OSError as error:
-        raise _not_printed(program, str(error)) from error
+        raise _not_printed(program, error.strerror or str(error)) from error
     with running:
         printed = running.folder / "report.pdf"
         try:
@@ -78,7 +80,9 @@ def page_as_pdf(text: str) -> bytes:
         except subprocess.TimeoutExpired as error:
             said = str(error)
         if not printed.exists():
-            raise _not_printed(program, said)
+            full = shutil.disk_usage(running.folder).free < _LEAST_ROOM
+            cause = OSError(errno.ENOSPC, "the disk is full") if full else None
+            raise _not_printed(program, said.replace(str(running.folder), "…")) from cause
         return printed.read_bytes()
 
 
