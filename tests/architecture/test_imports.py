@@ -54,6 +54,7 @@ FOUNDATION = {
     "_cases",
     "_checks",
     "_overflow",
+    "_processes",
     "_constants",
     "_errors",
     "_files",

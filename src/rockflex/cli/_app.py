@@ -33,20 +33,36 @@ def serve(
         list[str] | None,
         typer.Option(help="Another name by which the page is reached; may be repeated.", show_default=False),
     ] = None,
+    root_path: Annotated[
+        str, typer.Option(help="Path under which a server in front of it has the page: /rocking.", show_default=False)
+    ] = "",
+    no_token: Annotated[
+        bool, typer.Option("--no-token", help="Open the page to everyone who can reach it, without a token.")
+    ] = False,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Serve the web page: structure, earthquake, response, fragility and design."""
+    from secrets import token_urlsafe
+
     from rockflex.web import serve as start
     from rockflex.web._hosts import is_loopback_host
 
+    token = ""
     if not is_loopback_host(host):
-        console.print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
+        token = "" if no_token else token_urlsafe(24)
+        console.print_remark(
+            f"Everyone who can reach {host} can use the page: it has no passwords."
+            if no_token
+            else "The page opens by the address with its token only; who has that can use it. Without: --no-token."
+        )
 
     def announce(address: str) -> None:
         console.print_remark(f"{address} (stop with Ctrl-C)")
 
     with suppress(KeyboardInterrupt):  # the usual way to stop it
-        start(port, host, names=name or (), open_browser=open_browser, on_start=announce)
+        start(
+            port, host, names=name or (), token=token, root_path=root_path, open_browser=open_browser, on_start=announce
+        )
 
 
 EPILOG = """[bold]Examples[/bold]

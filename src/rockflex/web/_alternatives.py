@@ -1,9 +1,7 @@
 """Alternatives that the page keeps: side by side with the present structure, drawn, tabled and reported."""
 
 from contextlib import nullcontext
-from pathlib import Path
 from string import ascii_uppercase
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._json import as_json_value
@@ -15,7 +13,7 @@ from rockflex.report.run._comparison_page import demand_table
 from rockflex.study import MAX_ALTERNATIVES, PreparedCase
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import RUN_WORK_LIMIT, check_work_of_runs
-from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._refusal import Refusal, errors_as_refusals, temporary_folder
 from rockflex.web._response import SKETCH_POINTS, response_curves
 from rockflex.web._state import Alternative, PageState, refusals_of_alternative
 from rockflex.web._structure import (
@@ -97,8 +95,8 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
 def comparison_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
     """Return the name and the content of the report of all alternatives."""
     project = project_of_state(state, uploads)
-    with TemporaryDirectory() as folder, errors_as_refusals("alternatives"):
+    with temporary_folder("alternatives") as folder, errors_as_refusals("alternatives"):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
         told: dict[str, Any] = {"units": state.units, "language": state.language, **project.head}
-        file = write_report(comparison, Path(folder) / "comparison.html", **told)
+        file = write_report(comparison, folder / "comparison.html", **told)
         return file.name, file.read_bytes()

@@ -29,13 +29,14 @@ from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
+from rockflex.web._connections import BoundedBodies
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file_maker
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
 from rockflex.web._projects import read_project
-from rockflex.web._protection import KnownHosts, SecurityHeaders
+from rockflex.web._protection import KnownHosts, SecurityHeaders, TokenRequired
 from rockflex.web._readers import Readers
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
@@ -327,8 +328,8 @@ def _file_answer(name: str, kind: str, content: bytes) -> Response:
     return Response(content, media_type=kind, headers={"Content-Disposition": disposition})
 
 
-def create_page_application(host: str, names: Sequence[str]) -> Starlette:
-    """Return the application for a host name; it answers to that and to some others (`KnownHosts`)."""
+def create_page_application(host: str, names: Sequence[str], token: str = "") -> Starlette:
+    """Return the application for a host name; it answers to that and to some others (`KnownHosts`), with a token."""
     server = PageServer()
     view, uploads = server.view, server.uploads
 
@@ -357,6 +358,8 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
     middleware = [
         Middleware(SecurityHeaders),
         Middleware(KnownHosts, host=host, names=names),
+        *([Middleware(TokenRequired, token=token)] if token else []),
+        Middleware(BoundedBodies),
         Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3),
     ]
     routes = [

@@ -1,8 +1,6 @@
 """The files of the page: figures, tables, records, studies, programs, a report and an animation."""
 
 from collections.abc import Callable
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import tomli_w
@@ -19,7 +17,7 @@ from rockflex.web._folders import records_as_zip
 from rockflex.web._jobs import RunsJob
 from rockflex.web._projects import project_file
 from rockflex.web._record_sets import RECORD_SET_PAGE
-from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._refusal import Refusal, errors_as_refusals, storage_as_refusals, temporary_folder
 from rockflex.web._response import is_long_run_report, simulate_state_models
 from rockflex.web._script import response_script, selection_script
 from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
@@ -87,9 +85,9 @@ def animation_file(state: PageState, uploads: UploadedRecords, progress: Progres
         )
         raise Refusal({"free_vibration": message})
     title = None if state.scale == 1.0 else f"{literal_text(motion.name)} × {state.scale:g}"
-    with TemporaryDirectory() as folder, errors_as_refusals("models"):
+    with temporary_folder("models") as folder, errors_as_refusals("models"):
         file = animate(
-            found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
+            found, folder / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
             width=ANIMATION_WIDTH, progress=progress,
         )  # fmt: skip
         return file.name, file.read_bytes()
@@ -144,7 +142,7 @@ def _unknown_file(what: str) -> Refusal:
 def _printed(what: str, name: str, content: bytes) -> tuple[str, bytes]:
     if what not in REPORTS_AS_PDF:
         return name, content
-    with errors_as_refusals(""):
+    with storage_as_refusals(""), errors_as_refusals(""):
         return name.replace(".html", ".pdf"), page_as_pdf(content.decode())
 
 

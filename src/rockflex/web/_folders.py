@@ -6,8 +6,7 @@ import warnings
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
+from pathlib import PurePosixPath
 from typing import Any
 
 from rockflex._archives import ArchiveError, ArchiveLimits, open_archive
@@ -24,7 +23,7 @@ from rockflex.web._limits import (
     MAX_FOLDER_SAMPLES,
     check_record_length,
 )
-from rockflex.web._refusal import Refusal
+from rockflex.web._refusal import Refusal, temporary_folder
 from rockflex.web._state import parse_page_json
 
 FIELD = "record.folder"  # of the messages
@@ -261,17 +260,14 @@ def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: f
 def _folder_surveys(
     files: Sequence[SentRecordFile], units: str | None, dt: float | None
 ) -> tuple[RecordSurvey, RecordSurvey]:
-    try:
-        with TemporaryDirectory() as folder:
-            for each in files:
-                if each.content is not None:
-                    (Path(folder) / each.name).write_bytes(each.content)
-            try:
-                return survey_without_obspy(Path(folder), units, dt)
-            except InputError as error:
-                raise Refusal({FIELD: str(error).replace(folder, "the folder")}) from error
-    except OSError as error:
-        raise Refusal({FIELD: "the server could not store the files temporarily. Try again."}, 503) from error
+    with temporary_folder(FIELD) as folder:
+        for each in files:
+            if each.content is not None:
+                (folder / each.name).write_bytes(each.content)
+        try:
+            return survey_without_obspy(folder, units, dt)
+        except InputError as error:
+            raise Refusal({FIELD: str(error).replace(str(folder), "the folder")}) from error
 
 
 def _record_too_long_text(motion: GroundMotion) -> str:

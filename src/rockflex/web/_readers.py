@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tempfile
 import traceback
-import weakref
 from collections.abc import Callable
 from threading import Event, Lock, Thread
 from time import monotonic
@@ -20,6 +19,7 @@ from typing import Any, BinaryIO
 
 from rockflex._errors import InputError
 from rockflex._language import Language, use_language
+from rockflex._processes import ProcessWithFolder
 from rockflex.solve import RunStoppedError, asked_to_stop
 from rockflex.web._refusal import Refusal
 
@@ -33,19 +33,18 @@ class _Reader:
     """One process."""
 
     def __init__(self) -> None:
-        folder = tempfile.TemporaryDirectory(prefix="rockflex-", ignore_cleanup_errors=True)
         paths = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
-        process = subprocess.Popen(
-            [sys.executable, "-m", "rockflex.web._readers", folder.name],
+        own = ProcessWithFolder(
+            lambda folder: [sys.executable, "-m", "rockflex.web._readers", str(folder)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=os.environ | paths,
         )
+        process = own.process
         assert process.stdin is not None  # both are pipes
         assert process.stdout is not None
         self._given, self._told = process.stdin, process.stdout
-        self.close = weakref.finalize(self, _end, process, folder)  # at the latest at the end of this process
-        self._process = process
+        self.close, self._own = own.close, own
         try:
             pickle.load(self._told)  # it has imported what it needs: only now does the time of a file begin
         except (EOFError, pickle.UnpicklingError) as error:
@@ -53,14 +52,14 @@ class _Reader:
             raise Refusal("The server could not start to read the file. Try again.", 503) from error
 
     def read(self, work: tuple[Any, ...], seconds: float) -> tuple[str, Any]:
-        """Return how it ended ("done", "refused", "unusable", "failed", "ended" or "late"), and what it returned."""
+        """Return how the work ended ("done", "refused", "unusable", "failed", "ended" or "late"), and its result."""
         over, late, asked, begun = Event(), Event(), asked_to_stop(), monotonic()
 
         def watch() -> None:
             while not over.wait(POLL):
                 if asked() or monotonic() - begun > seconds:
                     late.set()
-                    self._process.kill()
+                    self._own.process.kill()
                     return
 
         watching = Thread(target=watch, name="reader", daemon=True)
@@ -74,16 +73,6 @@ class _Reader:
         finally:
             over.set()
             watching.join()
-
-
-def _end(process: "subprocess.Popen[bytes]", folder: "tempfile.TemporaryDirectory[str]") -> None:
-    process.kill()
-    for pipe in (process.stdin, process.stdout):
-        if pipe is not None:
-            with contextlib.suppress(OSError):  # what was not sent
-                pipe.close()
-    process.wait()
-    folder.cleanup()
 
 
 class Readers:

@@ -2,8 +2,14 @@
 
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
+from errno import EDQUOT, ENOSPC
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from rockflex._errors import InputError, SolverError
+
+DISK_FULL = "The server's disk is full. Try again later, or tell whoever runs the server."
+NOT_STORED = "the server could not store the file temporarily. Try again."
 
 
 class Refusal(Exception):  # noqa: N818 - an answer, not a failure
@@ -25,3 +31,32 @@ def errors_as_refusals(path: str, before: str = "") -> Generator[None]:
         yield
     except (InputError, SolverError) as error:
         raise Refusal({path: f"{before}{error}"}) from error
+
+
+@contextmanager
+def storage_as_refusals(path: str) -> Generator[None]:
+    """Turn errors of the server's disk, also those put into words already, into a refusal that names no file."""
+    try:
+        yield
+    except OSError as error:
+        raise Refusal({path: DISK_FULL if _is_of_full_disk(error) else NOT_STORED}, 503) from error
+    except (InputError, Refusal) as error:
+        if not _is_of_full_disk(error):
+            raise
+        raise Refusal({path: DISK_FULL}, 503) from error
+
+
+def _is_of_full_disk(error: BaseException | None) -> bool:
+    """Return whether an error, or one from which it was raised, says that there is no space."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in (ENOSPC, EDQUOT):
+            return True
+        error = error.__cause__
+    return False
+
+
+@contextmanager
+def temporary_folder(path: str) -> Generator[Path]:
+    """Yield a temporary folder, whose errors become refusals about the field at a path."""
+    with storage_as_refusals(path), TemporaryDirectory(prefix="rockflex-") as folder:
+        yield Path(folder)

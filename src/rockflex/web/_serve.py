@@ -11,11 +11,12 @@ if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 KEEP_ALIVE = 20  # s for the next request on an open connection
+BACKLOG = 128  # connections that wait to be accepted
 GRACE = 3  # s for the answers in progress when the server is stopped
 ARENAS = -8, 2  # what glibc's malloc.h calls M_ARENA_MAX, and how many pools of memory the threads share
 
 
-def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
+def make_app(host: str = "127.0.0.1", names: Sequence[str] = (), token: str = "") -> "Starlette":
     """Return the page as an ASGI application, for another server.
 
     Parameters
@@ -25,10 +26,12 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
         listens on all addresses ("0.0.0.0" or "::"), to each of them and to the name of the machine.
     names
         Other names by which it is reached, such as that of a server in front of it.
+    token
+        If given, it answers only to those who bring it: ``?token=...`` at the end of the first address.
     """
     from rockflex.web._app import create_page_application
 
-    return create_page_application(host, names)
+    return create_page_application(host, names, token)
 
 
 def serve(
@@ -36,12 +39,14 @@ def serve(
     host: str = "127.0.0.1",
     *,
     names: Sequence[str] = (),
+    token: str = "",
+    root_path: str = "",
     open_browser: bool = False,
     on_start: Callable[[str], object] | None = None,
 ) -> None:
     """Serve the web page until interrupted.
 
-    A client must send the content of a request within 60 s.
+    A client must send the head of a request within 10 s, and its content within 60 s.
 
     Parameters
     ----------
@@ -49,9 +54,11 @@ def serve(
         TCP port.
     host
         Address to listen on; the default accepts only this machine. There are no users and passwords: before opening
-        it to a network, put a server with authentication in front of it.
-    names
+        it to a network, give a `token`, or put a server with authentication in front of it.
+    names, token
         As for `make_app`.
+    root_path
+        The path under which a server in front of it, which removes that path, has the page: ``"/rocking"``.
     open_browser
         Whether to open the page in the browser of this machine.
     on_start
@@ -60,29 +67,34 @@ def serve(
     Raises
     ------
     InputError
-        If the port cannot be opened.
+        If the port cannot be opened, or the page does not start.
     """
     number = checked_whole_number("port", port, 1, 65535)
     _let_threads_share_memory()
-    app = make_app(host, names)
+    app = make_app(host, names, token)
     import signal
     import socket
     from threading import Thread, current_thread, main_thread
 
     import uvicorn
 
+    from rockflex.web._connections import patient_protocol
+
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    # Windows would give a port to several servers, and the others to those of which none listens yet.
+    exclusive = getattr(socket, "SO_EXCLUSIVEADDRUSE", None)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR if exclusive is None else exclusive, 1)
     try:
         listener.bind((host, number))
+        listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
         raise InputError(
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(
-        app, log_level="warning", http="h11", ws="none", timeout_keep_alive=KEEP_ALIVE, limit_concurrency=500,
-        timeout_graceful_shutdown=GRACE, server_header=False,
+        app, log_level="warning", http=patient_protocol(), ws="none", timeout_keep_alive=KEEP_ALIVE,
+        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False, root_path=root_path.rstrip("/"),
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
@@ -95,7 +107,7 @@ def serve(
             while running.is_alive() and not server.started:
                 running.join(0.02)
             if server.started:
-                address = page_address(host, number)
+                address = page_address(host, number) + (f"/?token={token}" if token else "")
                 if on_start is not None:
                     on_start(address)
                 if open_browser:
@@ -105,6 +117,8 @@ def serve(
                     Thread(target=webbrowser.open, args=(address,), daemon=True).start()
             while running.is_alive():
                 running.join(0.5)
+            if not server.started:
+                raise InputError("The page did not start; the lines above say why.")
         finally:
             server.should_exit = True
             running.join(GRACE + 2.0)

@@ -7,7 +7,6 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from threading import Lock
 from typing import Any, Generic, TypeVar
 
@@ -22,7 +21,7 @@ from rockflex.motion import (
 )
 from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile, read_record_folder, unpacked_record_files
 from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
-from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._refusal import Refusal, errors_as_refusals, temporary_folder
 
 MAX_RECORDS = 64  # in memory
 MAX_NAME = 60  # characters of the name under which a file is stored while it is read
@@ -200,21 +199,20 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
     """Read a motion of any direction, named as its file."""
     shown = clean_upload_name(name)
     _check_upload_size(shown, content, field)
-    try:
-        with TemporaryDirectory() as folder:
-            # The name and its suffix are evidence of what the file holds.
-            file = Path(folder) / (re.sub(r"[^A-Za-z0-9._-]", "_", shown)[-MAX_NAME:].lstrip(".") or "record.txt")
-            file.write_bytes(content)
-            try:
-                motion = read_motion_without_obspy(file, units=units, dt=dt)
-            except InputError as error:
-                said = str(error).replace(str(file), shown)
-                if error.field == "component":
-                    said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
-                raise Refusal({field: said}) from error
-    except OSError as error:
-        raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
+    with temporary_folder(field) as folder:
+        # The name and its suffix are evidence of what the file holds.
+        file = folder / (re.sub(r"[^A-Za-z0-9._-]", "_", shown)[-MAX_NAME:].lstrip(".") or "record.txt")
+        file.write_bytes(content)
+        try:
+            motion = read_motion_without_obspy(file, units=units, dt=dt)
+        except InputError as error:
+            said = str(error).replace(str(file), shown)
+            if error.field == "component":
+                said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
+            raise Refusal({field: said}) from error
     named = replace(motion, name=Path(shown).stem or "record")
+    if motion.metadata is not None and motion.metadata.source == file.name:
+        named = replace(named, metadata=replace(motion.metadata, source=shown))
     check_record_length(named, field)
     return named
 

@@ -1,5 +1,6 @@
 """Reports as files of other programs: PDF, printed by a browser, and documents of Word."""
 
+import errno
 import io
 import os
 import re
@@ -7,11 +8,11 @@ import shutil
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._language import chosen_language, translated
+from rockflex._processes import ProcessWithFolder
 from rockflex._shown import shortened
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 from rockflex.report.run._sheet import Drawing, ReportPage
@@ -19,6 +20,7 @@ from rockflex.report.run._sheet import Drawing, ReportPage
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge")
 BROWSER_VARIABLE = "ROCKFLEX_BROWSER"
 _MAX_SECONDS = 120.0
+_LEAST_ROOM = 1_000_000  # bytes on the disk, below which a print fails for want of them
 _MARGIN, _WIDTH = 12.0, 186.0  # of a sheet of A4 in mm
 _SUBSCRIPT = re.compile(r"(?<=[^\W\d_])(\*?)_([\w*–]+)|\^(−?\d+)")
 
@@ -57,27 +59,39 @@ def page_as_pdf(text: str) -> bytes:
         If there is no browser, or it writes nothing.
     """
     program = chromium()
-    with TemporaryDirectory(prefix="rockflex-") as folder:
-        page, printed = Path(folder) / "report.html", Path(folder) / "report.pdf"
+
+    def command(folder: Path) -> list[str]:
+        page = folder / "report.html"
         page.write_text(text, "utf-8")
-        command = [program, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-pdf-header-footer"]
-        command += [f"--user-data-dir={folder}/profile", f"--print-to-pdf={printed}"]
+        given = [program, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-pdf-header-footer"]
+        given += [f"--user-data-dir={folder}/profile", f"--print-to-pdf={folder}/report.pdf"]
         if getattr(os, "geteuid", lambda: 1)() == 0:
-            command.append("--no-sandbox")  # which it refuses to do without for root, as in containers
+            given.append("--no-sandbox")  # which it refuses to do without for root, as in containers
+        return [*given, page.as_uri()]
+
+    try:
+        running = ProcessWithFolder(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    except OSError as error:
+        raise _not_printed(program, error.strerror or str(error)) from error
+    with running:
+        printed = running.folder / "report.pdf"
         try:
-            done = subprocess.run(
-                [*command, page.as_uri()], capture_output=True, text=True, timeout=_MAX_SECONDS, check=False
-            )
-            said = done.stderr
-        except (OSError, subprocess.TimeoutExpired) as error:
+            said = running.process.communicate(timeout=_MAX_SECONDS)[1]
+        except subprocess.TimeoutExpired as error:
             said = str(error)
         if not printed.exists():
-            raise InputError(
-                f"{program} printed no PDF: {shortened(said.strip() or 'it said nothing', 300)}. Write a report that "
-                "ends in .html, and print it from a browser.",
-                field="path",
-            )
+            full = shutil.disk_usage(running.folder).free < _LEAST_ROOM
+            cause = OSError(errno.ENOSPC, "the disk is full") if full else None
+            raise _not_printed(program, said.replace(str(running.folder), "…")) from cause
         return printed.read_bytes()
+
+
+def _not_printed(program: str, said: str) -> InputError:
+    return InputError(
+        f"{program} printed no PDF: {shortened(said.strip() or 'it said nothing', 300)}. Write a report that ends in "
+        ".html, and print it from a browser.",
+        field="path",
+    )
 
 
 def word_module() -> Any:

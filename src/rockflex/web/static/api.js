@@ -26,10 +26,12 @@ async function checked(response) {
   throw new Refusal(errors ?? { "": t("The server responded with status {status}.", { status: response.status }) }, response.status);
 }
 
+const PAGE = new URL("..", import.meta.url); // a server in front may have the page under a path of its own
+
 async function request(path, options) {
   let response;
   try {
-    response = await fetch(path, options);
+    response = await fetch(new URL(`.${path}`, PAGE), options);
   } catch (error) {
     if (error.name === "AbortError") throw new Refusal({}, 0); // replaced by a later request
     throw new Refusal({ "": t("The server does not respond. Is rockflex serve still running?") }, 0);

@@ -1,6 +1,7 @@
 // Fields with a label, a unit, limits, help and space for an error.
 
 import { h, number, symbol } from "./dom.js";
+import { keep, kept } from "./kept.js";
 import { COMMA, t } from "./texts.js";
 import { fromSI, toSI, unitFor } from "./units.js";
 
@@ -74,8 +75,8 @@ function controls(element) {
 // A part of a form under its heading, open or closed as the visitor left the last one of this name.
 export function folded(name, title, ...children) {
   const key = `rockflex-open-${name}`;
-  const element = h("details", { class: "task", open: localStorage.getItem(key) === "true", "data-task": name,
-    ontoggle: () => localStorage.setItem(key, element.open) }, h("summary", {}, title), children);
+  const element = h("details", { class: "task", open: kept(key) === "true", "data-task": name,
+    ontoggle: () => keep(key, element.open) }, h("summary", {}, title), children);
   return element;
 }
 

@@ -3,6 +3,7 @@
 import { ask, attempt, get, Refusal } from "./api.js";
 import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
+import { keep, kept } from "./kept.js";
 import { language, t } from "./texts.js";
 import { setUnits } from "./units.js";
 
@@ -233,12 +234,12 @@ function theme(name) {
 
 function themes() {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  theme(localStorage.getItem("rockflex-theme") ?? (dark.matches ? "dark" : "light"));
+  theme(kept("rockflex-theme") ?? (dark.matches ? "dark" : "light"));
   const button = document.getElementById("theme");
   button.title = button.ariaLabel = t("Light or dark theme");
   button.addEventListener("click", () => {
     const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-    localStorage.setItem("rockflex-theme", next);
+    keep("rockflex-theme", next);
     theme(next);
   });
 }
