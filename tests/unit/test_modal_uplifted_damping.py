@@ -145,8 +145,8 @@ def test_free_vibration_decays_at_that_rate():
 
 
 MANY = rf.Frame(
-    n_stories=60, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=np.inf, period=4.0, aspect_ratio=8.0,
-    damping_ratio=0.02,
+    n_stories=60, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=np.inf, period=4.0,
+    aspect_ratio=8.0, damping_ratio=0.02,
 )  # fmt: skip
 
 
