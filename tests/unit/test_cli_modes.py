@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -390,3 +391,16 @@ def test_what_looks_like_another_unit_is_said_and_not_refused(tmp_path):
     assert json.loads(ran.stdout)["warnings"] == list(expected)
     assert [f"Warning: {text}" for text in expected] == ran.stderr.splitlines()[:2]
     assert invoke(STRUCTURE).stderr == ""
+
+
+@pytest.mark.parametrize(("flags", "shown"), [((), 10), (("--all",), 12), (("--modes", "11"), 11)])
+def test_the_first_ten_modes_are_printed(flags, shown):
+    frame = "--stories 12 --story-height 3 --story-mass 4e4 --base-mass 4e4 --stiffness-ratio inf --period 1"
+    line = ["modes", *frame.split(), "--aspect-ratio", "9", "--damping-ratio", "0.02", *flags]
+    done = CliRunner().invoke(app, line)
+    assert done.exit_code == 0, done.output
+    numbers = [int(row.split()[0]) for row in done.stdout.splitlines() if re.match(r"\d++ ", row)]
+    assert numbers == [*range(1, shown + 1)] * 2
+    assert ("--all prints the others" in done.stdout) == (shown == 10)
+    everything = json.loads(CliRunner().invoke(app, [*line, "--json"]).stdout)
+    assert len(everything["modes"]) == (11 if shown == 11 else 12)

@@ -1,9 +1,11 @@
 """The command line: its entry, its help, its tables and its files."""
 
+import functools
 import json
 import math
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -229,6 +231,55 @@ def test_module_and_version():
     done = python("-m", "rockflex", "--version")
     assert done.stdout == f"rockflex {rockflex.__version__}\n"
     assert done.returncode == 0
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("sign", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("exists", [True, False])
+def test_a_command_that_is_ended_leaves_no_rubbish(tmp_path, sign, exists):
+    target = tmp_path / "home" / "out"
+    target.parent.mkdir()
+    if exists:
+        target.mkdir()
+    program = (
+        "import sys, time\nfrom rockflex.cli import _modes, main\n"
+        "def wait(*_):\n    print('at work', flush=True)\n    time.sleep(60)\n"
+        "import rockflex.plot\nrockflex.plot.save_figure = wait\n"
+        "sys.argv = ['rockflex', 'modes', sys.argv[1], '--out', sys.argv[2]]\nmain()"
+    )
+    structure = str(ROOT / "examples" / "structure_1.toml")
+    command = [sys.executable, "-c", program, structure, str(target)]
+    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # which background jobs of a shell ignore
+    with subprocess.Popen(command, stdout=-1, stderr=-1, text=True, preexec_fn=heed) as process:
+        assert process.stdout.readline() == "at work\n"
+        process.send_signal(sign)
+        stderr = process.communicate()[1]
+    left = [path.name for path in target.parent.rglob(".rockflex-*")]
+    if sign != signal.SIGKILL:
+        assert process.returncode == 130
+        assert stderr == "Stopped; nothing was written.\n"
+        assert left == []
+    else:
+        assert len(left) == 1
+    write(target, {"a.txt": "a"})  # an empty-looking folder is empty
+    assert [path.name for path in target.parent.rglob(".rockflex-*")] == []
+    assert sorted(contents(target)) == ["a.txt", "summary.json"]
+
+
+def test_a_temporary_folder_of_a_command_at_work_stays(tmp_path):
+    with output.staged_output_folder(tmp_path, {"versions": {}}, force=False):
+        (at_work,) = tmp_path.iterdir()
+        with pytest.raises(InputError, match="not empty"):
+            write(tmp_path, {"a.txt": "a"})
+        write(tmp_path, {"a.txt": "a"}, force=True)
+        assert at_work.is_dir()
+    other = tmp_path / ".rockflex-mine"
+    other.mkdir()
+    (other / "thesis.txt").touch()
+    os.utime(other, (0.0, 0.0))
+    write(tmp_path, {"a.txt": "a"}, force=True)
+    assert (other / "thesis.txt").exists()
 
 
 def test_entry_point_is_main():

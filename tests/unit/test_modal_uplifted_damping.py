@@ -1,6 +1,7 @@
 """Damping while uplifted: closed forms, the state matrix in forty digits, free vibration, overdamped modes."""
 
 import math
+import time
 from dataclasses import replace
 
 import mpmath
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from rockflex.modal import _uplifted
 from rockflex.modal._uplifted import uplifted_damping_ratios
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, table_1_frame
 
@@ -140,3 +142,60 @@ def test_free_vibration_decays_at_that_rate():
     steps = np.diff(response.modal_displacement[:, 0], n=2)  # free of the slow drift about which D swings
     decay = math.exp(-2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2))
     assert steps[64] / steps[0] == pytest.approx(decay, rel=1e-3)
+
+
+MANY = rf.Frame(
+    n_stories=60, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=np.inf, period=4.0,
+    aspect_ratio=8.0, damping_ratio=0.02,
+)  # fmt: skip
+
+
+def many_modes(case):
+    p = MANY.rocking()
+    if case == "clustered":  # pairs of modes whose frequencies differ by a millionth, and two that are equal
+        omega = p.omega.copy()
+        omega[1::2] = omega[::2] * (1.0 + 1e-6)
+        omega[21] = omega[20]
+        return replace(p, omega=omega, zeta=np.full(60, 0.02))
+    if case == "held":  # the rotation vibrates
+        return rf.Restrained(MANY, rf.Tendon(1e6, 1e10)).rocking()
+    zeta = {"light": 0.02, "heavy": 0.2, "overdamped": 0.5, "undamped": 0.0}.get(case, 0.02)
+    return replace(p, zeta=np.linspace(0.5, 1.0, 60) * zeta)
+
+
+@pytest.mark.parametrize("case", ["light", "heavy", "clustered", "held", "undamped"])
+def test_many_modes_have_the_damping_of_the_dense_matrix(case, monkeypatch):
+    p = many_modes(case)
+    found = rf.uplifted_modes(p)
+    monkeypatch.setattr(_uplifted, "_tracked_damping_ratios", lambda *_: None)
+    dense = rf.uplifted_modes(p).damping_ratio
+    assert not np.array_equal(found.damping_ratio, dense) or case == "undamped"
+    np.testing.assert_array_less(
+        np.abs(found.damping_ratio - dense), ROUNDING * max(p.omega[-1], found.omega[-1]) / found.omega
+    )
+
+
+def test_many_modes_of_which_some_are_overdamped(monkeypatch):
+    p = many_modes("overdamped")
+    found = rf.uplifted_modes(p).damping_ratio
+    assert found.shape == (60,)
+    assert (found > 1.0).any()
+    monkeypatch.setattr(_uplifted, "_tracked_damping_ratios", lambda *_: None)
+    np.testing.assert_array_equal(rf.uplifted_modes(p).damping_ratio, found)
+
+
+@pytest.mark.slow
+def test_a_thousand_stories_take_seconds():
+    p = rf.Frame(
+        n_stories=1000, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=np.inf, period=20.0,
+        aspect_ratio=8.0, damping_ratio=0.02,
+    ).rocking()  # fmt: skip
+    begin = time.process_time()
+    found = rf.uplifted_modes(p)
+    assert time.process_time() - begin < 10.0  # all eigenvalues of 2002 equations took 30 s, the shapes more
+    assert (np.diff(found.omega) > 0.0).all()
+    assert (found.omega > p.omega * (1.0 - 1e-9)).all()
+    assert (found.omega[:-1] < p.omega[1:] * (1.0 + 1e-9)).all()
+    first = found.omega[:100]
+    moment = rf.frequency_equation(p, np.array([first * (1.0 - 1e-9), first * (1.0 + 1e-9)]))
+    assert (moment[0] * moment[1] < 0.0).all()

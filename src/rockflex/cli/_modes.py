@@ -56,6 +56,7 @@ UNITS = {
     "rocking_stiffness": "N m/rad",
 }
 LISTED = ("self_centring", "elements", "pivots")
+SHOWN = 10  # modes that are printed without --all
 SIDES = {1: "right", -1: "left"}
 
 
@@ -66,6 +67,9 @@ def modes(
     ] = None,
     structure: options.StructureFile = None,
     n_modes: Annotated[int | None, options.option("--modes", "N", "Show only the first N modes.")] = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Print all modes, not only the first ten; files and --json have them anyway.")
+    ] = False,
     adequacy: Annotated[
         bool,
         typer.Option(
@@ -116,9 +120,10 @@ def modes(
     if json:
         typer.echo(output.to_json(document))
     else:
-        print_modes(loaded, rows, lifted, properties, UnitSystem(output_units or "kN"))
+        most = properties.n_modes if every or n_modes is not None else SHOWN
+        print_modes(loaded, rows, lifted, properties, UnitSystem(output_units or "kN"), most)
         if need is not None:
-            _print_adequacy(need)
+            _print_adequacy(need, need.n_modes if every else SHOWN)
     console.print_warnings(document["warnings"])
 
 
@@ -170,7 +175,7 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
     return {**head, "rows": rows, **rest, "tolerance": asdict(need.tolerance)}
 
 
-def _print_adequacy(need: "Adequacy") -> None:
+def _print_adequacy(need: "Adequacy", most: int) -> None:
     mass = "m*_n/Σm" if need.base_known else "m*_n/m_tot"
     headings = ("modes", "m*_n h*_n/L_0^r", "left out [%]", mass, "left out [%]", "ω*_1 error [%]", "ω*_2 error [%]")
     columns = (
@@ -180,7 +185,10 @@ def _print_adequacy(need: "Adequacy") -> None:
         100.0 * need.base_shear_left,
         *(100.0 * need.frequency_error).T,
     )
-    rows = [[str(k + 1), *(console.number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
+    rows = [
+        [str(k + 1), *(console.number(float(column[k]), 3) for column in columns)]
+        for k in range(min(need.n_modes, most))
+    ]
     console.print_line("\nNumber of modes needed")
     console.print_rows(headings, rows)
     console.print_line()
@@ -212,14 +220,19 @@ def _write_modes(
 Rows = list[dict[str, Any]]
 
 
-def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties", units: UnitSystem) -> None:
-    """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
+def print_modes(
+    loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties", units: UnitSystem, most: int
+) -> None:
+    """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ.
+
+    Of the modes the first `most` are printed.
+    """
     console.print_line(f"{loaded.title}\n")
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
     if rows:
         length = units.of("length")
         headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, length.heading("h*_n"), "Γ_n φ_top", "ζ_n")
-        measured = [{**row, "effective_height": row["effective_height"] / length.size} for row in rows]
+        measured = [{**row, "effective_height": row["effective_height"] / length.size} for row in rows[:most]]
         console.print_rows(
             headings, _mode_cells(measured, "period omega mass_share effective_height top_ordinate zeta")
         )
@@ -227,9 +240,11 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
             console.print_line(f"\nWhile uplifted{about}, with these modes{note}", wrap=True)
-            kept = [row for row in lifted if row.get("side", "") == side]
+            kept = [row for row in lifted if row.get("side", "") == side][:most]
             headings = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n")
             console.print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))
+        if len(rows) > most:
+            console.print_line(f"\nThe first {most} of {len(rows)} modes; --all prints the others.")
         console.print_line()
     total = sum(float(row["mass_share"]) for row in rows)
     values: tuple[tuple[object, str, float, tuple[str, ...]], ...] = (

@@ -2,7 +2,9 @@
 
 import json
 import re
+import shutil
 import tempfile
+import time
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +16,8 @@ from rockflex._files import check_regular_file
 from rockflex._versions import package_versions
 
 SUMMARY = "summary.json"
+STAGE = ".rockflex-"  # begin of the names of temporary folders
+YOUNG = 60.0  # s in which a temporary folder may not have its lock yet
 
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
@@ -38,7 +42,7 @@ def check_output_folder(folder: Path | None, *, force: bool) -> None:
         return
     if folder.exists() and not folder.is_dir():
         raise InputError(f"--out {folder} is a file. Give a folder; it is created if it does not exist.")
-    if folder.is_dir() and not force and any(folder.iterdir()):
+    if folder.is_dir() and not force and not all(_is_dead_stage(each) for each in folder.iterdir()):
         raise InputError(
             f"The folder {folder} is not empty. Give another one, or --force to replace the results in it."
         )
@@ -54,7 +58,10 @@ def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool)
     home = folder if folder.is_dir() else folder.absolute().parent
     try:
         home.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".rockflex-", dir=home) as temporary:
+        for left in home.glob(f"{STAGE}*"):
+            if _is_dead_stage(left):
+                shutil.rmtree(left, ignore_errors=True)
+        with tempfile.TemporaryDirectory(prefix=STAGE, dir=home) as temporary, _held(Path(temporary)):
             stage = Path(temporary) / "results"
             stage.mkdir()
             yield stage
@@ -66,6 +73,29 @@ def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool)
         raise InputError(
             f"Cannot write to {folder}: {error.strerror or error}. Give a folder that can be written to."
         ) from error
+
+
+@contextmanager
+def _held(temporary: Path) -> Generator[None]:
+    """Show other processes that this one is at work in its temporary folder."""
+    from rockflex.study.folders import LOCK, locked_folder
+
+    lock = locked_folder(temporary / LOCK)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def _is_dead_stage(path: Path) -> bool:
+    """Whether a file is the temporary folder of a command that was killed."""
+    if not path.name.startswith(STAGE) or path.is_symlink() or not path.is_dir():
+        return False
+    from rockflex.study.folders import LOCK, lock_holder
+
+    if (path / LOCK).exists():
+        return lock_holder(path / LOCK) is None
+    return {each.name for each in path.iterdir()} <= {"results"} and time.time() - path.stat().st_mtime > YOUNG
 
 
 def output_file_stems(names: Iterable[str]) -> list[str]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, SupportsIndex
+from typing import Any, Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,8 @@ from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 
 MAX_FREQUENCY = 1e60  # rad/s, whose fourth power still fits in double precision
+_MANY = 50  # modes, from which their damping ratios are found one by one: all eigenvalues take a time with their cube
+_MOST_STEPS, _CONVERGED, _APART = 20, 1e-9, 1e-9  # of the iteration, and relative to the root
 _ROOT_SHIFTS = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
 
 
@@ -166,10 +168,13 @@ def uplifted_modes(
     omega = np.sqrt(squares[1:])
     modal = motions[1:, 1:]
     largest = modal[np.abs(modal).argmax(axis=0), np.arange(n)] if n else np.ones(0)
+    ratios = _tracked_damping_ratios(p, pivot, squares, motions) if n >= _MANY else None
+    if ratios is None:
+        ratios = uplifted_damping_ratios(squares, _uplifted_modal_damping(p, pivot, motions))
     return UpliftedModes(
         omega=omega,
         ratio=omega / p.omega,
-        damping_ratio=uplifted_damping_ratios(squares, _uplifted_modal_damping(p, pivot, motions)),
+        damping_ratio=ratios,
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
         growth_rate=math.sqrt(max(-squares[0], 0.0)),
         sway_rate=math.sqrt(max(squares[0], 0.0)),
@@ -202,13 +207,21 @@ def _lowest_uplifted_modes(p: RockingProperties, pivot: Pivot, vibrations: int) 
     back[0, 0] = 1.0 / rest
     back[1:, 0] = -arm / rest
     stiffness = np.concatenate([[pivot.rocking_stiffness], p.omega**2])
-    squares, vectors = np.linalg.eigh(back.T @ (stiffness[:, None] * back))
-    mass = np.eye(n + 1)
-    mass[0, 0], mass[0, 1:], mass[1:, 0] = pivot.i_theta, arm, arm
     kept = slice(vibrations + 1)
-    squares, motions = _polished_uplifted_modes(stiffness, mass, squares[kept], back @ vectors[:, kept])
+    squares, vectors = _lowest_eigenvalues(back.T @ (stiffness[:, None] * back), vibrations + 1)
+    mass = _Arrow(pivot.i_theta, arm, np.ones(n))
+    squares, motions = _polished_uplifted_modes(mass, stiffness, squares[kept], back @ vectors[:, kept])
     motions[1:] /= root[:, None]
     return squares, motions
+
+
+def _lowest_eigenvalues(matrix: Array, count: int) -> tuple[Array, Array]:
+    """Return the first `count` eigenvalues and vectors of a symmetric matrix, or all of a small one."""
+    if len(matrix) < _MANY or count == len(matrix):
+        return np.linalg.eigh(matrix)
+    from scipy.linalg import eigh
+
+    return eigh(matrix, subset_by_index=(0, count - 1))
 
 
 def _uplifted_modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
@@ -221,19 +234,97 @@ def _uplifted_modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) 
     return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
 
 
-def _polished_uplifted_modes(stiffness: Array, mass: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class _Arrow:
+    """Symmetric matrices of the rotation and n modes that are coupled by the rotation alone, for k shifts at once.
+
+    `corner` is a number or (k,), `border` and `diagonal` are (n,) or (n, k).
+    """
+
+    corner: Any
+    border: Any
+    diagonal: Any
+
+    def times(self, vectors: Any) -> Any:
+        """Return the product with vectors (n + 1, k), each of its own matrix."""
+        border, diagonal = (each if each.ndim == 2 else each[:, None] for each in (self.border, self.diagonal))
+        first = self.corner * vectors[0] + (border * vectors[1:]).sum(axis=0)
+        return np.concatenate([first[None], border * vectors[0] + diagonal * vectors[1:]])
+
+    def solved(self, right: Any) -> Any:
+        """Return the solutions (n + 1, k) by elimination of the modes; not finite where a matrix is singular."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            share = self.border / self.diagonal
+            turn = (right[0] - (share * right[1:]).sum(axis=0)) / (self.corner - (share * self.border).sum(axis=0))
+            return np.concatenate([turn[None], right[1:] / self.diagonal - share * turn])
+
+
+def _polished_uplifted_modes(mass: _Arrow, stiffness: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
     """Restore the digits that small roots lost to rounding of the largest, by one step of inverse iteration each."""
     moved = motions
     for shift in _ROOT_SHIFTS:
-        near = np.diag(stiffness) - (squares * (1.0 + shift))[:, None, None] * mass
-        try:
-            moved = np.linalg.solve(near, (mass @ motions).T[:, :, None])[:, :, 0].T
-        except np.linalg.LinAlgError:
-            continue
-        break
+        at = squares * (1.0 + shift)
+        near = _Arrow(
+            stiffness[0] - at * mass.corner,
+            -at * mass.border[:, None],
+            stiffness[1:, None] - at * mass.diagonal[:, None],
+        )
+        found = near.solved(mass.times(motions))
+        if np.isfinite(found).all():
+            moved = found
+            break
     moved = moved / np.abs(moved).max(axis=0)
     work = np.einsum("in,in->n", moved, stiffness[:, None] * moved)
-    return work / np.einsum("in,in->n", moved, mass @ moved), moved
+    return work / np.einsum("in,in->n", moved, mass.times(moved)), moved
+
+
+def _tracked_damping_ratios(p: RockingProperties, pivot: Pivot, squares: Array, motions: Array) -> Array | None:
+    """Return ζ* (n,) as `uplifted_damping_ratios`, from roots followed one by one; None if not all are found so.
+
+    Each undamped mode is the start of an iteration with the Rayleigh functional. Where all modes vibrate, and no two
+    starts end at one root, these are all roots.
+    """
+    first = 1 if squares[0] < 0.0 else 0  # the rotation grows, or is the vibration with the smallest root
+    root = np.sqrt(p.effective_mass)
+    arm, drag = root * p.effective_height, 2.0 * p.zeta * p.omega
+    x = motions[:, first:].astype(complex)
+    x[1:] *= root[:, None]
+    mass, damping = _Arrow(pivot.i_theta, arm, np.ones(p.n_modes)), _Arrow(0.0, 0.0 * arm, drag)
+    stiffness = _Arrow(pivot.rocking_stiffness, 0.0 * arm, p.omega**2)
+
+    def nearest() -> Any:
+        a, b, c = ((x * each.times(x)).sum(axis=0) for each in (mass, damping, stiffness))
+        half = np.sqrt(b * b - 4.0 * a * c + 0.0j)
+        one, other = (half - b) / (2.0 * a), (-half - b) / (2.0 * a)
+        return np.where(one.imag > other.imag, one, other)
+
+    at = nearest()
+    for _ in range(_MOST_STEPS):
+        slope = _Arrow(
+            2.0 * at * mass.corner,
+            2.0 * at * arm[:, None],
+            2.0 * at * mass.diagonal[:, None] + drag[:, None],
+        )
+        near = at * (1.0 + _ROOT_SHIFTS[0])  # where the matrix is regular
+        system = _Arrow(
+            pivot.rocking_stiffness + near**2 * mass.corner,
+            near**2 * arm[:, None],
+            near**2 + drag[:, None] * near + p.omega[:, None] ** 2,
+        )
+        found = system.solved(slope.times(x))
+        if not np.isfinite(found).all():
+            return None
+        x = found / np.abs(found).max(axis=0)
+        before, at = at, nearest()
+        if (np.abs(at - before) <= _CONVERGED * np.abs(at)).all():
+            break
+    else:
+        return None
+    apart = np.abs(at[:, None] - at) + np.diag(np.abs(at))
+    if not (at.imag > _APART * np.abs(at)).all() or not (apart > _APART * np.abs(at)).all():
+        return None
+    at = at[np.argsort(np.abs(at))][1 - first :]
+    return -at.real / np.abs(at)
 
 
 def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side: int | None = None) -> Array:
