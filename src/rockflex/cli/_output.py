@@ -8,12 +8,15 @@ import time
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file
 from rockflex._versions import package_versions
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SUMMARY = "summary.json"
 STAGE = ".rockflex-"  # begin of the names of temporary folders
@@ -109,6 +112,13 @@ def output_file_stems(names: Iterable[str]) -> list[str]:
             stem = f"{plain}-{count}"
         stems.append(stem)
     return stems
+
+
+def write_table(table: "pd.DataFrame", path: Path) -> None:
+    """Write a table as CSV."""
+    from rockflex._csv import table_as_csv
+
+    path.write_text(table_as_csv(table), "utf-8", newline="\n")
 
 
 def remove_earlier_output(folder: Path) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
+from rockflex._csv import table_as_csv
 from rockflex._language import translated
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
@@ -169,7 +170,7 @@ def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[s
             f"{MAX_HISTORY_VALUES} at most. Choose fewer models or springs, or Python lines."
         )
         raise Refusal({"models": message})
-    return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
+    return "histories.csv", table_as_csv(pd.concat(tables), float_format="%.9g", na_rep="nan", lineterminator=None)
 
 
 def _history_table(response: Response) -> "pd.DataFrame":
@@ -204,7 +205,7 @@ def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[
 
 
 def _csv(table: "pd.DataFrame") -> str:
-    return table.to_csv(index=False, lineterminator="\n")
+    return table_as_csv(table)
 
 
 def _motion_file_name(motion: GroundMotion) -> str:
@@ -243,7 +244,7 @@ def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tu
 def study_file(page: StudyPage, job: RunsJob, state: PageState, what: str) -> tuple[str, bytes]:
     """Return the name and the content of the table, the figure or the report of a study, from its runs so far."""
     if what == "table":
-        return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
+        return f"{page.table_name}.csv", table_as_csv(page.table(job, state), lineterminator=None).encode()
     from rockflex.plot import figure_as_svg
 
     if REPORTS_AS_PDF.get(what, what) == "report" and page.report is not None:
