@@ -30,6 +30,7 @@ def table_as_csv(table: "pd.DataFrame", **how: Any) -> str:
     safe = table.rename(columns=guarded_text)
     for place, kind in enumerate(safe.dtypes):
         if kind.kind == "O":  # texts and categories
-            safe.isetitem(place, safe.iloc[:, place].astype(object).map(guarded_text, na_action="ignore"))
+            texts: Any = safe.iloc[:, place].astype(object).map(guarded_text, na_action="ignore")
+            safe.isetitem(place, texts)
     options: dict[str, Any] = {"index": False, "lineterminator": "\n"} | how
     return safe.to_csv(**options)
