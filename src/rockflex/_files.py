@@ -4,12 +4,12 @@ import codecs
 import os
 import stat
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import path_shown, shown
 
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
@@ -94,12 +94,34 @@ def write_file_atomically(path: Path, content: bytes) -> Path:
     return path
 
 
+def write_given_file(path: Path, content: bytes) -> Path:
+    """Write `content` as `write_file_atomically` to the path that a call was given.
+
+    Raises
+    ------
+    InputError
+        If the system does not let it.
+    """
+    try:
+        return write_file_atomically(path, content)
+    except OSError as error:
+        raise InputError(
+            f"Cannot write to {path_shown(path)}: {error.strerror or error}. Give a path that can be written to.",
+            field="path",
+        ) from error
+
+
 @contextmanager
 def writing_atomically(path: Path, suffix: str = "") -> Generator[Path]:
     """Yield the path of a temporary file; what was written to it is flushed to disk and moved to `path` at the end.
 
-    The name of the temporary file ends in `suffix`. On failure it is removed, and `path` is unchanged.
+    The name of the temporary file ends in `suffix`. On failure it is removed, and `path` is unchanged. Where `path` is
+    a link, the file is replaced that it leads to.
     """
+    if path.is_symlink():
+        with suppress(FileNotFoundError):  # a link to a new file
+            path.stat()  # an error if links lead in a circle
+        path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}{suffix}")
     try:

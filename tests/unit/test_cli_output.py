@@ -267,6 +267,18 @@ def test_a_command_that_is_ended_leaves_no_rubbish(tmp_path, sign, exists):
     assert sorted(contents(target)) == ["a.txt", "summary.json"]
 
 
+def test_what_is_replaced_is_told(tmp_path, capsys):
+    write(tmp_path, {"a.txt": "a", "b.txt": "b"})
+    (tmp_path / "mine.txt").write_text("mine")
+    assert capsys.readouterr().err == ""
+    write(tmp_path, {"b.txt": "new", "mine.txt": "new"}, force=True)
+    told = capsys.readouterr().err
+    assert "Replaced the earlier results in" in told
+    assert {"a.txt", "b.txt", "summary.json", "mine.txt"} <= set(re.split(r"[\s,]++", told))
+    output.remove_earlier_output(tmp_path)
+    assert "3 files, b.txt, mine.txt, summary.json" in capsys.readouterr().err
+
+
 def test_a_temporary_folder_of_a_command_at_work_stays(tmp_path):
     with output.staged_output_folder(tmp_path, {"versions": {}}, force=False):
         (at_work,) = tmp_path.iterdir()

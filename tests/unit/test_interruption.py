@@ -86,6 +86,8 @@ def test_threads_stop_with_the_map_and_with_whoever_started_it():
 
 def test_the_page_stops_a_run_that_its_visitor_has_left():
     class Left:
+        client = None
+
         async def is_disconnected(self):
             return monotonic() - begun > ASKED
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from rockflex._errors import InputError
+from rockflex.cli import _console as console
 from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
@@ -167,4 +168,5 @@ def prepare_folder(out: Path, *, force: bool) -> None:
         raise InputError(f"{out} is in use by {holder}. Wait until it has finished, or end it.")
     output.remove_earlier_output(out)
     if ours:
+        console.print_remark(f"Removed {kept}, what an earlier reproduction had finished")
         shutil.rmtree(kept)

@@ -210,7 +210,7 @@ def _write_motion_measures(
             for row in document["motions"]
         ]
         table = pd.DataFrame(rows).drop(columns="metadata")
-        table.to_csv(stage / "motions.csv", index=False, lineterminator="\n")
+        output.write_table(table, stage / "motions.csv")
         if few:
             from rockflex.plot import plot_motion, save_figure
 

@@ -5,15 +5,20 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file
+from rockflex._shown import few_texts_shown, number_with_noun
 from rockflex._versions import package_versions
+from rockflex.cli import _console as console
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SUMMARY = "summary.json"
 STAGE = ".rockflex-"  # begin of the names of temporary folders
@@ -111,10 +116,25 @@ def output_file_stems(names: Iterable[str]) -> list[str]:
     return stems
 
 
+def write_table(table: "pd.DataFrame", path: Path) -> None:
+    """Write a table as CSV."""
+    from rockflex._csv import table_as_csv
+
+    path.write_text(table_as_csv(table), "utf-8", newline="\n")
+
+
 def remove_earlier_output(folder: Path) -> None:
-    """Remove the files that an earlier summary in the folder lists as its own, and the summary."""
-    for name in _files_of_earlier_output(folder):
+    """Remove the files that an earlier summary in the folder lists as its own, and the summary; tell which."""
+    names = _files_of_earlier_output(folder)
+    for name in names:
         (folder / name).unlink(missing_ok=True)
+    _tell_replaced(folder, names)
+
+
+def _tell_replaced(folder: Path, names: Sequence[str]) -> None:
+    if names:
+        listed = f"{number_with_noun(len(names), 'file')}, {few_texts_shown(names)}"
+        console.print_remark(f"Replaced the earlier results in {folder}: {listed}")
 
 
 def _move_output_files(stage: Path, folder: Path, names: list[str]) -> None:
@@ -122,9 +142,12 @@ def _move_output_files(stage: Path, folder: Path, names: list[str]) -> None:
         stage.rename(folder)
         return
     # Earlier results left in the folder would look like new ones.
-    for name in _files_of_earlier_output(folder):
+    earlier = _files_of_earlier_output(folder)
+    others = [name for name in names if name not in earlier and (folder / name).exists()]
+    for name in earlier:
         if name not in names:
             (folder / name).unlink(missing_ok=True)
+    _tell_replaced(folder, [*earlier, *others])
     for name in names:
         (stage / name).replace(folder / name)
 

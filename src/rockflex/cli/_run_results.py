@@ -300,7 +300,7 @@ def write_run_results(
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
     with output.staged_output_folder(folder, document, force=force) as stage:
-        pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
+        output.write_table(pd.DataFrame([run.row() for run in runs]), stage / "results.csv")
         if histories:
             _write_histories(stage, batch, runs, form)
     console.print_remark(
@@ -322,7 +322,7 @@ def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun], for
             continue
         if form == "csv":
             table = pd.concat(list(_history_tables(batch, responses)))
-            table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+            output.write_table(table, stage / f"{stem}.csv")
         else:
             write = {"mat": to_matlab, "nc": to_netcdf}[form]
             for response in responses:

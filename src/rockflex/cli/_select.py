@@ -315,8 +315,8 @@ def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection"
     from rockflex.plot import plot_selection, save_figure
 
     with output.staged_output_folder(folder, document, force=force) as stage:
-        chosen.table().to_csv(stage / "selection.csv", index=False, lineterminator="\n")
-        chosen.spectra().to_csv(stage / "spectra.csv", index=False, lineterminator="\n")
+        output.write_table(chosen.table(), stage / "selection.csv")
+        output.write_table(chosen.spectra(), stage / "spectra.csv")
         save_figure(plot_selection(chosen), stage / "selection.png")
     console.print_remark(f"Written to {folder}")
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import check_all_positive, checked_finite_vector, checked_positive
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._files import checked_file_path, write_given_file
 from rockflex._shown import shown
 from rockflex.fragility._arguments import Curve, FragilityCurve, checked_fragility_curve
 from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, openquake_kind_and_period, openquake_unit_in_si
@@ -247,7 +247,7 @@ def write_nrml(
         else:
             _add_continuous_nrml_function(model, function.name, function.lognormal, shared, im, unit)
     ET.indent(root)
-    return write_file_atomically(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
+    return write_given_file(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
 
 
 def _add_discrete_nrml_function(
@@ -357,7 +357,7 @@ def write_pelicun(
     for function in functions:
         cells = [cell for limit in function.curves for cell in _pelicun_state_cells(function, limit, im)]
         table.writerow([function.name, 0, demand, unit, 0, 1, *cells])
-    return write_file_atomically(target, text.getvalue().encode())
+    return write_given_file(target, text.getvalue().encode())
 
 
 def _pelicun_state_cells(function: FragilityFunction, limit: str, im: Array) -> tuple[str, str, str, str]:

@@ -24,7 +24,7 @@ from matplotlib.ticker import FixedFormatter, Formatter
 
 from rockflex._checks import is_one_of
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._files import checked_file_path, write_given_file
 from rockflex._language import Language, chosen_language, use_language
 from rockflex._number_format import unit_with_prefix
 from rockflex._shown import shown
@@ -555,7 +555,7 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
             f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
             f"{shown(target.suffix)}. Change the suffix."
         )
-    return write_file_atomically(target, _figure_file_content(figure, suffix))
+    return write_given_file(target, _figure_file_content(figure, suffix))
 
 
 def figure_as_svg(figure: Figure) -> str:

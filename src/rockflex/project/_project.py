@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, cast
 from rockflex._archives import archive_bytes
 from rockflex._checks import checked_instance
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._files import checked_file_path, write_given_file
 from rockflex._html import HtmlTable
 from rockflex._language import Language
 from rockflex._schema import ReportKeys, schema_keys
@@ -356,13 +356,7 @@ class Project(HtmlTable, Value):
         target = checked_file_path("path", path)
         target = target if target.suffix == SUFFIX else target.with_name(target.name + SUFFIX)
         content = archive_bytes(project_members(self))
-        try:
-            return write_file_atomically(target, content)
-        except OSError as error:
-            raise InputError(
-                f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.",
-                field="path",
-            ) from error
+        return write_given_file(target, content)
 
     def _checked_name(self, name: str | None) -> str:
         first = next(iter(self.structures))

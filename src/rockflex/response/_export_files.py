@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._files import checked_file_path, write_given_file
 from rockflex._shown import shown
 from rockflex.response._tables import DIMENSIONS, QUANTITIES, history_values, import_xarray
 
@@ -69,7 +69,7 @@ def write_matlab(path: str | Path, model: str | None, variables: Sequence[Variab
     savemat(to, content, long_field_names=True, do_compression=True, oned_as="column")
     # The header of 116 bytes tells the time and the machine, for which equal results would differ.
     head = b"MATLAB 5.0 MAT-file, written by rockflex".ljust(116)
-    return write_file_atomically(target, head + file.getvalue()[116:])
+    return write_given_file(target, head + file.getvalue()[116:])
 
 
 def write_netcdf(path: str | Path, model: str | None, variables: Sequence[Variable]) -> Path:
@@ -87,7 +87,7 @@ def write_netcdf(path: str | Path, model: str | None, variables: Sequence[Variab
         found[name] = (dims, each.values, {key: value for key, value in known.items() if value})
     data = xr.Dataset(found, labels, {"source": "rockflex"} | ({} if model is None else {"model": model}))
     # SciPy writes version 3, which every program reads and which needs no other library.
-    return write_file_atomically(target, bytes(data.to_netcdf(engine="scipy")))
+    return write_given_file(target, bytes(data.to_netcdf(engine="scipy")))
 
 
 def _checked_export_path(path: Any, suffix: str) -> Path:

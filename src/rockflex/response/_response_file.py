@@ -13,7 +13,7 @@ import numpy as np
 from rockflex._archives import ArchiveLimits, arrays_from_npz
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular_file, write_file_atomically
+from rockflex._files import check_regular_file, write_given_file
 from rockflex._registry import registered_objects
 from rockflex._shown import shown
 from rockflex.modal import (
@@ -132,7 +132,7 @@ def save_response(
     arrays["response"] = np.array(json.dumps(scalars))
     content = io.BytesIO()
     np.savez_compressed(content, **arrays)
-    return write_file_atomically(path, content.getvalue())
+    return write_given_file(path, content.getvalue())
 
 
 def load_response(path: Path, kinds: dict[str, type]) -> Kept:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
+from rockflex._csv import table_as_csv
 from rockflex._language import translated
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, Selection, record_csv
@@ -171,7 +172,7 @@ def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[s
             f"{MAX_HISTORY_VALUES} at most. Choose fewer models or springs, or Python lines."
         )
         raise Refusal({"models": message})
-    return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
+    return "histories.csv", table_as_csv(pd.concat(tables), float_format="%.9g", na_rep="nan", lineterminator=None)
 
 
 def _history_table(response: Response) -> "pd.DataFrame":
@@ -206,7 +207,7 @@ def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[
 
 
 def _csv(table: "pd.DataFrame") -> str:
-    return table.to_csv(index=False, lineterminator="\n")
+    return table_as_csv(table)
 
 
 def _motion_file_name(motion: GroundMotion) -> str:
@@ -251,7 +252,7 @@ def study_file_maker(
     """
 
     def table(_: Progress) -> tuple[str, bytes]:
-        return f"{page.table_name}.csv", page.table(job, state).to_csv(index=False).encode()
+        return f"{page.table_name}.csv", table_as_csv(page.table(job, state), lineterminator=None).encode()
 
     def figure(_: Progress) -> tuple[str, bytes]:
         from rockflex.plot import figure_as_svg

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._files import checked_file_path, write_given_file
 from rockflex._language import Language, chosen_language, use_language
 from rockflex._shown import shown
 from rockflex._units import Decimal, SystemName, checked_unit_system, with_decimal_commas
@@ -137,12 +137,7 @@ def write_report(
         else:
             text = page_as_html(page, figures)
             content = page_as_pdf(text) if target.suffix.lower() == ".pdf" else text.encode()
-    try:
-        return write_file_atomically(target, content)
-    except OSError as error:
-        raise InputError(
-            f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
-        ) from error
+    return write_given_file(target, content)
 
 
 def run_report_as_html(
