@@ -12,6 +12,7 @@ import rockflex as rf
 from builders import random_shaking
 from rockflex.cli import app
 from rockflex.models import parse_model
+from rockflex.motion import record_csv
 from rockflex.solve import Task, WorkLimitError, _work
 from rockflex.study import PreparedCase
 from rockflex.study.spec import GroundTable
@@ -133,9 +134,7 @@ def on_command_line(made, motion, tmp_path, *arguments):
     files = []
     for each in (SHORT, motion):
         files.append(tmp_path / f"{each.name}.csv")
-        times = each.dt * np.arange(each.acceleration.size)
-        rows = [f"{t:.17g},{a:.17g}" for t, a in zip(times, each.acceleration, strict=True)]
-        files[-1].write_text("\n".join(["time (s),acc (m/s2)", *rows]))
+        files[-1].write_text(record_csv(each))
     given = [str(made[0]), *map(str, files), "--model", made[2], "--json", *map(str, arguments)]
     result = CliRunner().invoke(app, ["run", *given], env={"COLUMNS": "200"})
     assert result.exit_code == 0, result.stderr

@@ -430,7 +430,7 @@ def record_csv(motion: GroundMotion) -> str:
     if motion.vertical is not None:
         columns["vertical (m/s2)"] = motion.vertical
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    return "\n".join([*(heads if known else []), ",".join(columns), *(",".join(map(repr, row)) for row in rows), ""])
+    return "\n".join([*heads, ",".join(columns), *(",".join(map(repr, row)) for row in rows), ""])
 
 
 def record_info_in_csv(file: Path, heads: list[str]) -> RecordInfo:

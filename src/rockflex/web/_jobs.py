@@ -194,6 +194,8 @@ class BackgroundJobs(Generic[AnyWork]):
         with self._changed:
             for job in self._jobs.values():
                 job.cancelled.set()
+                if job.status == "waiting":
+                    job.status = "cancelled"
             self._closed = True
             self._changed.notify_all()
 

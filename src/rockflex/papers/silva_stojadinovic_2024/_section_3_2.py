@@ -14,7 +14,6 @@ from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval, bootstrap_intervals
 from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, Piece, table_1_frame
 from rockflex.report import PublishedNumber, Remark, ReproducedResult
-from rockflex.study import record_groups
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -419,14 +418,15 @@ def _friction_of_structure(records: PaperRecords, number: int) -> "pd.DataFrame"
     import pandas as pd
 
     suite, name = records.suite[::EVERY], list(STRUCTURES)[number]
-    grouped = list(zip(suite, record_groups(suite), strict=True))
+    recordings = rf.group_stations(suite)
+    groups = {motion.name: each.name for each in recordings for motion in each.horizontal}
     rows: list[dict[str, str | float]] = []
     for model in MODELS:
-        for motion, group in grouped:
+        for motion in suite:
             response = rf.simulate(table_1_frame(name), motion, model)
             if response.status == "rocking":
                 printed = response.required_friction_excluding_impacts(0.0, printed=True)
-                row = {"model": model, "structure": name, "group": group}
+                row = {"model": model, "structure": name, "group": groups[motion.name]}
                 rows.append(row | {"printed": printed, "mended": response.required_friction})
     return pd.DataFrame(rows, columns=["model", "structure", "group", "printed", "mended"])
 
