@@ -5,6 +5,7 @@ import pytest
 
 from rockflex import motion as rm
 from rockflex._errors import InputError
+from rockflex.motion import _pulses
 
 ONE_LENGTH = [rm.one_sine_pulse, rm.one_cosine_pulse, rm.half_sine_pulse, rm.rectangular_pulse]
 
@@ -98,6 +99,13 @@ def test_quiet_motion():
     assert quiet.dt == 0.005
     assert not quiet.acceleration.any()
     assert rm.quiet_motion(1e-3, dt=1.0).duration == pytest.approx(1e-3)
+
+
+def test_a_motion_has_as_many_steps_as_allowed(monkeypatch):
+    monkeypatch.setattr(_pulses, "MAX_SAMPLES", 10)
+    assert rm.quiet_motion(10.0, dt=1.0).acceleration.size == 11
+    with pytest.raises(InputError, match="use a larger dt"):
+        rm.quiet_motion(10.5, dt=1.0)
 
 
 def test_names_tell_pulses_apart():
