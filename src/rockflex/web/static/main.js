@@ -3,7 +3,7 @@
 import { ask, attempt, get, Refusal } from "./api.js";
 import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
-import { keep, kept } from "./kept.js";
+import { keep as keepForLater, kept } from "./kept.js";
 import { language, t } from "./texts.js";
 import { setUnits } from "./units.js";
 
@@ -239,7 +239,7 @@ function themes() {
   button.title = button.ariaLabel = t("Light or dark theme");
   button.addEventListener("click", () => {
     const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-    keep("rockflex-theme", next);
+    keepForLater("rockflex-theme", next);
     theme(next);
   });
 }
