@@ -402,7 +402,7 @@ def test_other_suffixes_are_refused(figure, tmp_path, name, suffix):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(("error", "said"), [(ValueError, "nothing"), (OSError, "No space left")])
+@pytest.mark.parametrize(("error", "said"), [(ValueError, "nothing"), (rf.InputError, "No space left")])
 def test_a_figure_that_cannot_be_drawn_or_written_leaves_the_old_file(figure, tmp_path, monkeypatch, error, said):
     path = save_figure(figure, tmp_path / "a.png")
     before = path.read_bytes()
@@ -411,7 +411,7 @@ def test_a_figure_that_cannot_be_drawn_or_written_leaves_the_old_file(figure, tm
         message = "No space left on device"
         raise OSError(message)
 
-    if error is OSError:
+    if error is rf.InputError:
         monkeypatch.setattr("os.fsync", fill)
     else:
         figure.axes[0].set_xlabel(r"$\nothing$")
@@ -423,8 +423,9 @@ def test_a_figure_that_cannot_be_drawn_or_written_leaves_the_old_file(figure, tm
 
 def test_a_folder_in_the_way_leaves_nothing_behind(figure, tmp_path):
     (tmp_path / "a.png" / "full").mkdir(parents=True)
-    with pytest.raises(OSError, match=r"a\.png"):
+    with pytest.raises(rf.InputError, match=r"a\.png") as error:
         save_figure(figure, tmp_path / "a.png")
+    assert error.value.field == "path"
     assert [p.name for p in tmp_path.iterdir()] == ["a.png"]
 
 

@@ -4,6 +4,7 @@ import asyncio
 import threading
 import time
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack
 from types import SimpleNamespace
 
@@ -49,6 +50,12 @@ def test_a_short_step_is_refused_wherever_it_is_computed_and_takes_no_memory(dt)
         tracemalloc.stop()
 
 
+def run(work):
+    """Run a coroutine in a thread of its own: a browser of other tests may have its event loop in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, work).result()
+
+
 def test_nothing_is_computed_for_those_who_left_while_they_waited() -> None:
     server, begun, free, done = _app.PageServer(), threading.Event(), threading.Event(), []
 
@@ -70,7 +77,7 @@ def test_nothing_is_computed_for_those_who_left_while_they_waited() -> None:
         free.set()
         await asyncio.wait_for(asyncio.gather(first, last), HANG)
 
-    asyncio.run(all_of_them())
+    run(all_of_them())
     assert done == ["c"]
 
 
@@ -88,7 +95,7 @@ def test_one_visitor_leaves_a_place_to_others() -> None:
             pass
         assert slots._held.total() == 0
 
-    asyncio.run(all_of_them())
+    run(all_of_them())
 
 
 class Waits(BackgroundWork):
