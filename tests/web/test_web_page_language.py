@@ -34,8 +34,11 @@ LEFT = """([left, sentences]) => {
     for (const of of document.querySelectorAll(`[${name}]`)) keep(of.getAttribute(name), of);
   return [...found].filter((text) => !left.includes(text));
 }"""
-# Messages of errors; names of languages, units, arrays of files and records; the example of a table.
-SENTENCES = ".error, #language, #units, #part, .thumbs, #record-title, #chosen td:nth-child(2), #report tbody, textarea"
+# Messages of errors; names of languages, units, arrays of files and records; what files say; the example of a table.
+SENTENCES = (
+    ".error, #language, #units, #part, .thumbs, #record-title, #chosen td:nth-child(2), #report tbody, #report .notes, "
+    "textarea"
+)
 
 
 class Marks(dict[str, str]):
