@@ -56,6 +56,7 @@ FOUNDATION = {
     "_overflow",
     "_processes",
     "_constants",
+    "_csv",
     "_errors",
     "_files",
     "_html",

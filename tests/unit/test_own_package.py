@@ -51,7 +51,9 @@ def site(tmp_path_factory) -> Path:
 @pytest.fixture
 def here(tmp_path) -> Path:
     """A folder with the files of a user."""
-    (tmp_path / "a.log").write_text("TANKLOG at=T1 dt=0.01 n=4\n0.0\n20.0\n-30.0\n10.0\n", "utf-8")
+    (tmp_path / "records").mkdir()
+    for record in (tmp_path / "a.log", tmp_path / "records" / "a.log"):
+        record.write_text("TANKLOG at=T1 dt=0.01 n=4\n0.0\n20.0\n-30.0\n10.0\n", "utf-8")
     (tmp_path / "tank.toml").write_text(TANK.format(prefix=""), "utf-8")
     for study, (_, more) in STUDIES.items():
         (tmp_path / f"{study}.toml").write_text(STUDY.format(study=study, more=more), "utf-8")
@@ -83,7 +85,7 @@ for model in ("MDOF-S", "2DOF-C"):
     assert (back.element_force == run.element_force).all()
     assert back.max_rotation == run.max_rotation
 assert rf.read_motion("a.log").pga == 9.81e-3 * 30.0
-assert [each.metadata.station for each in rf.read_suite(".")] == ["T1"]
+assert [each.metadata.station for each in rf.read_suite("records")] == ["T1"]
 ground = rf.Ground(springs=rf.winkler_bed(1.2, 2.4, 1e8, n=8), base_inertia=1e5)
 assert rf.simulate(tank, motion, ground=ground).element_energy[0] > 0.0
 """
