@@ -7,7 +7,7 @@ from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
-from rockflex.study import PreparedCase
+from rockflex.studies import PreparedCase
 from twins.controlled import Bar, ControlledTwin
 
 SCALES = (1.0, 1.25, 1.5, 1.75, 2.0)

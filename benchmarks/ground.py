@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 from timing import frame, least, milliseconds
 
 import rockflex as rf
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models import parse_model
-from rockflex.solve import Engine
-from rockflex.study import PreparedCase
+from rockflex.models._prepared_model import PreparedModel
+from rockflex.studies import PreparedCase
 
 SCALES = (1.0, 1.5, 2.0)
 ROUNDS = 11
@@ -64,12 +64,12 @@ def grounds(p: rf.RockingProperties) -> dict[str, rf.Ground]:
     }
 
 
-def engine_on(p: rf.RockingProperties, ground: rf.Ground | None) -> Engine:
+def engine_on(p: rf.RockingProperties, ground: rf.Ground | None) -> PreparedModel:
     return PreparedCase(parse_model("MDOF-S").of(p, ground=ground), 0.0).engine
 
 
 def nanoseconds_a_sample(
-    cases: dict[str, tuple[Engine, bool]], motions: list[rf.GroundMotion], shaken: list[np.ndarray]
+    cases: dict[str, tuple[PreparedModel, bool]], motions: list[rf.GroundMotion], shaken: list[np.ndarray]
 ) -> dict[str, float]:
     """Time of each case over all motions, of each the median of the rounds, divided by the samples run."""
     spent = {name: np.zeros((ROUNDS + 1, len(motions))) for name in cases}

@@ -22,7 +22,7 @@ from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
-from rockflex.study import PreparedCase
+from rockflex.studies import PreparedCase
 from twins.controlled import ControlledTwin
 
 MODES = (1, 5, 15)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
-from rockflex.models import element_force_sums
+from rockflex.models._elements import element_force_sums
 from rockflex.models._fields import RockingField
 from rockflex.models._vector_fields import field_numbers
 

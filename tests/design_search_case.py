@@ -7,7 +7,7 @@ from scipy.stats import norm
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.study import StudyMatrix
+from rockflex.studies._run_matrix import StudyMatrix
 
 FRAME = frame_values(n_stories=3, base_mass=50e3, period=0.6, aspect_ratio=8.0)
 BARE = rf.Frame(**FRAME)

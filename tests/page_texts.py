@@ -9,7 +9,7 @@ from typing import Any
 from babel.messages.extract import extract_javascript
 
 from rockflex.motion import MEASURES
-from rockflex.response import DEMANDS
+from rockflex.response._demands import DEMANDS
 from rockflex.response._limit_checks import KINDS, SOURCES
 from rockflex.web import _earthquake, _projects, _structure
 from rockflex.web._app import STATIC, _answer_about_page

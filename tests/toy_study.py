@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
-from rockflex.study.folders import StudyFolder
-from rockflex.study.parallel import map_chunks_on_dask, map_threads
+from rockflex.studies.folders import StudyFolder
+from rockflex.studies.parallel import map_chunks_on_dask, map_threads
 
 VERSIONS = {"rockflex": "0.1.0", "numpy": "2.0"}
 SPEC = {"seed": 7, "structure": {"period": 1.0, "stiffness_ratio": float("inf")}, "scales": [0.5, 1.0]}

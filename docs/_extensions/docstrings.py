@@ -13,11 +13,11 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 from sphinx.util.nodes import make_refnode
 
-from rockflex.structure.file import valid_value_description
+from rockflex.structure.file._toml_table import valid_value_description
 
 PLACES = (
     "rockflex",
-    "rockflex.study",
+    "rockflex.studies",
     "rockflex.papers.silva_stojadinovic_2024.population",
 )  # packages whose names the reference has
 SPANS = re.compile(r"(``.*?``|`[^`]*`|\*[A-Z][A-Za-z ]+\*)", re.DOTALL)  # literals, links, titles of books

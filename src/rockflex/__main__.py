@@ -6,7 +6,7 @@ import sys
 def main() -> None:
     """Run the command line, and end without a traceback if Ctrl-C comes while it is still being imported."""
     try:
-        from rockflex.cli import main as run
+        from rockflex.cli._app import main as run
 
         run()
     except KeyboardInterrupt:

@@ -14,63 +14,18 @@ ROOT = Path(__file__).parents[2] / "src" / "rockflex"
 
 # What each layer may import besides itself and the foundation. A new layer needs a row here.
 ALLOWED = {
-    "motion": {"engine"},
-    "modal": set(),
     "engine": set(),
     "fragility": set(),
-    "structure": {"modal"},
-    "models": {"modal", "engine"},
-    "solve": {"models", "engine", "motion"},
-    "response": {"solve", "models", "modal", "motion"},
-    "study": {
-        "engine",
-        "motion",
-        "modal",
-        "structure",
-        "models",
-        "solve",
-        "response",
-        "fragility",
-    },
-    "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
-    "report": {"plot", "response", "models", "modal", "motion", "structure"},
-    "project": {"motion", "modal", "models", "structure", "response", "study", "report"},
-    "papers": {
-        "motion",
-        "modal",
-        "structure",
-        "models",
-        "response",
-        "study",
-        "fragility",
-        "plot",
-        "report",
-    },
-    "kinds": {"motion", "structure", "study", "fragility", "plot", "papers"},
+    "motion": {"engine"},
+    "structure": set(),
+    "models": {"structure", "engine"},
+    "response": {"models", "engine", "structure", "motion"},
+    "studies": {"response", "models", "engine", "structure", "motion", "fragility"},
+    "plot": {"studies", "response", "structure", "motion", "fragility"},
+    "report": {"plot", "studies", "response", "models", "structure", "motion", "fragility"},
+    "papers": {"report", "plot", "studies", "response", "models", "structure", "motion", "fragility"},
 }
-FOUNDATION = {
-    "_archives",
-    "_arrays",
-    "_cases",
-    "_checks",
-    "_overflow",
-    "_processes",
-    "_constants",
-    "_csv",
-    "_errors",
-    "_files",
-    "_html",
-    "_json",
-    "_language",
-    "_matrices",
-    "_number_format",
-    "_registry",
-    "_schema",
-    "_shown",
-    "_units",
-    "_values",
-    "_versions",
-}  # every layer may import these; they only each other
+FOUNDATION = "foundation"  # every layer may import it, and it none
 FACES = {"cli", "web", "__main__"}  # may import anything, and nothing below them or the front
 USERS = {"papers"}  # may import the package's own front too, as its users do
 
@@ -78,15 +33,15 @@ USERS = {"papers"}  # may import the package's own front too, as its users do
 HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
-    "rich": {"cli", "study.progress"},
-    "IPython": {"study.progress"},
-    "distributed": {"study.parallel", "study._dask_worker"},
-    "dask": {"study.parallel"},
+    "rich": {"cli", "studies.progress"},
+    "IPython": {"studies.progress"},
+    "distributed": {"studies.parallel", "studies._dask_worker"},
+    "dask": {"studies.parallel"},
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},
     "anyio": {"web"},
-    "tomli_w": {"project", "web"},
+    "tomli_w": {"report.project", "web"},
     "obspy": {"motion"},
     "gmprocess": {"motion"},
     "openpyxl": {"motion"},
@@ -193,7 +148,7 @@ def forbidden(found: list[Import]) -> list[str]:
         importer, target = layer(each.importer), layer(each.target)
         if importer in FACES or importer == target:
             continue
-        known = FOUNDATION if importer in FOUNDATION or importer == "" else ALLOWED.get(importer, set()) | FOUNDATION
+        known = {FOUNDATION} | ALLOWED.get(importer, set()) if importer != FOUNDATION else set[str]()
         if importer in USERS:
             known |= {""}
         if target not in known:
@@ -207,7 +162,8 @@ def misplaced(found: list[Import]) -> list[str]:
     for each in found:
         library = each.target.split(".")[0]
         home = HOME.get(library)
-        places = {layer(each.importer), public(each.importer).removeprefix("rockflex.")}
+        module = public(each.importer).removeprefix("rockflex.")
+        places = {layer(each.importer), module, module.rpartition(".")[0]}
         elsewhere = home is not None and not home & places
         if elsewhere or (library in NEVER_AT_IMPORT and each.when == RUNTIME):
             wrong.append(str(each))
@@ -227,6 +183,21 @@ def cycle(found: list[Import], sources: dict[str, str]) -> list[str]:
     return []
 
 
+def handed_on(sources: dict[str, str]) -> list[str]:
+    """Imports inside the package from an `__init__`, which is for users, and not from where the name is defined."""
+    modules = {public(name) for name in sources}
+    packages = {public(name) for name in sources if name.endswith(".__init__")} - {"rockflex"}
+    return [
+        f"{name}:{node.lineno} imports {alias.name} from {node.module}"
+        for name, source in sources.items()
+        if not name.endswith(".__init__")
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ImportFrom) and node.module in packages
+        for alias in node.names
+        if f"{node.module}.{alias.name}" not in modules
+    ]
+
+
 def careless(sources: dict[str, str]) -> list[str]:
     """Modules without a docstring, too long, or of a layer that the table does not know."""
     wrong = []
@@ -236,7 +207,7 @@ def careless(sources: dict[str, str]) -> list[str]:
             wrong.append(f"{name} has {length} lines")
         if not ast.get_docstring(ast.parse(source)):
             wrong.append(f"{name} has no docstring")
-        if layer(name) not in ALLOWED.keys() | FOUNDATION | FACES | {""}:
+        if layer(name) not in ALLOWED.keys() | {FOUNDATION, ""} | FACES:
             wrong.append(f"{name} belongs to no layer of the table")
     return wrong
 
@@ -251,7 +222,7 @@ def found() -> list[Import]:
 
 
 def test_the_walk_sees_the_package(found: list[Import]) -> None:
-    assert {"rockflex.__init__", "rockflex._errors", "rockflex.solve.engine"} <= SOURCES.keys()
+    assert {"rockflex.__init__", "rockflex.foundation.errors", "rockflex.models._prepared_model"} <= SOURCES.keys()
     assert any(each.when == DEFERRED for each in found)
     assert any(each.when == TYPING for each in found)
 
@@ -267,6 +238,14 @@ def test_layers_import_only_what_the_table_allows(found: list[Import]) -> None:
 
 def test_libraries_stay_in_their_place(found: list[Import]) -> None:
     assert misplaced(found) == []
+
+
+def test_names_are_imported_from_where_they_are_defined() -> None:
+    assert handed_on(SOURCES) == []
+    package = {"motion/__init__": "from rockflex.motion._a import x", "motion/_a": "x = 1"}
+    assert handed_on(synthetic(package | {"plot/_b": "from rockflex.motion import x, _a"})) == [
+        "rockflex.plot._b:1 imports x from rockflex.motion"
+    ]
 
 
 def test_no_import_cycles_between_files(found: list[Import]) -> None:
@@ -295,24 +274,24 @@ def synthetic(modules: dict[str, str]) -> dict[str, str]:
     ("module", "source"),
     [
         ("motion/_pulses", "from rockflex.structure import Frame"),
-        ("motion/_pulses", "import rockflex.solve.exact as engine"),
-        ("motion/_pulses", "from rockflex import study"),
+        ("motion/_pulses", "import rockflex.models._work as work"),
+        ("motion/_pulses", "from rockflex import studies"),
         ("motion/_pulses", "from rockflex import Frame"),
-        ("motion/_pulses", "from ..study import simulate"),
-        ("motion/__init__", "from ..study import simulate"),
-        ("modal/_rocking", "def f():\n    from rockflex.motion import GroundMotion"),
-        ("modal/_rocking", "class A:\n    def f(self):\n        if self:\n            import rockflex.plot"),
-        ("solve/exact/march", "if TYPE_CHECKING:\n    from rockflex.modal import RockingProperties"),
-        ("solve/exact/march", "if typing.TYPE_CHECKING:\n    pass\nelse:\n    from rockflex.modal import X"),
-        ("solve/exact/march", "engine = importlib.import_module('rockflex.study')"),
-        ("models/_linear", "try:\n    from rockflex.solve import Solution\nexcept ImportError:\n    pass"),
+        ("motion/_pulses", "from ..studies import simulate"),
+        ("motion/__init__", "from ..studies import simulate"),
+        ("structure/_rocking", "def f():\n    from rockflex.motion import GroundMotion"),
+        ("structure/_rocking", "class A:\n    def f(self):\n        if self:\n            import rockflex.plot"),
+        ("engine/march", "if TYPE_CHECKING:\n    from rockflex.structure import RockingProperties"),
+        ("engine/march", "if typing.TYPE_CHECKING:\n    pass\nelse:\n    from rockflex.structure import X"),
+        ("engine/march", "engine = importlib.import_module('rockflex.studies')"),
+        ("models/_linear", "try:\n    from rockflex.response import Response\nexcept ImportError:\n    pass"),
         ("response/_file", "from rockflex.cli import main"),
-        ("plot/_history", "from rockflex.solve import Solution"),
-        ("_checks", "from rockflex.motion import GroundMotion"),
+        ("plot/_history", "from rockflex.engine.solution import Solution"),
+        ("foundation/checks", "from rockflex.motion import GroundMotion"),
     ],
 )
 def test_a_forbidden_arrow_is_seen(module: str, source: str) -> None:
-    sources = synthetic({"study/_table": "", "plot/_style": "", module: source})
+    sources = synthetic({"studies/_table": "", "plot/_style": "", module: source})
     (wrong,) = forbidden(imports(sources))
     assert f"rockflex.{module.replace('/', '.')}:" in wrong
 
@@ -320,16 +299,16 @@ def test_a_forbidden_arrow_is_seen(module: str, source: str) -> None:
 def test_allowed_arrows_pass() -> None:
     sources = synthetic(
         {
-            "_checks": "from rockflex._errors import InputError",
-            "structure/_frames": "from rockflex.modal import f\nfrom ._beam import g\nfrom .. import _checks",
+            "foundation/checks": "from rockflex.foundation.errors import InputError",
+            "structure/_frames": "from ._beam import f, g\nimport math\nfrom ..foundation import checks",
             "structure/_beam": "import numpy",
-            "cli/_run": "import rockflex as rf, typer, rich.console\nfrom rockflex.study import simulate",
-            "study/_table": "import pandasql\ndef f():\n    import pandas\nif TYPE_CHECKING:\n    import pandas as pd",
+            "cli/_run": "import rockflex as rf, typer, rich.console\nfrom rockflex.studies import simulate",
+            "studies/_table": "import pandasql\ndef f():\n    import pandas\nif TYPE_CHECKING:\n    import pandas",
             "plot/_history": "import matplotlib.pyplot as plt",
         }
     )
     found = imports(sources)
-    assert len(found) == 13
+    assert len(found) == 14
     assert forbidden(found) == []
     assert misplaced(found) == []
     assert cycle(found, sources) == []
@@ -338,11 +317,11 @@ def test_allowed_arrows_pass() -> None:
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("study/_table", "import pandas as pd"),
-        ("study/_table", "class A:\n    from pandas import DataFrame"),
-        ("study/_table", "if TYPE_CHECKING:\n    pass\nelse:\n    import pandas"),
-        ("response___history", "def show():\n    import matplotlib.pyplot as plt"),
-        ("study/_table", "from rich.table import Table"),
+        ("studies/_table", "import pandas as pd"),
+        ("studies/_table", "class A:\n    from pandas import DataFrame"),
+        ("studies/_table", "if TYPE_CHECKING:\n    pass\nelse:\n    import pandas"),
+        ("response/_history", "def show():\n    import matplotlib.pyplot as plt"),
+        ("studies/_table", "from rich.table import Table"),
         ("motion/_spectra", "from xarray import Dataset"),
     ],
 )
@@ -352,17 +331,19 @@ def test_a_misplaced_library_is_seen(module: str, source: str) -> None:
 
 
 def test_a_cycle_is_seen() -> None:
-    ring = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "from . import _a"})
-    assert {"rockflex.modal._a", "rockflex.modal._b"} == set(cycle(imports(ring), ring))
-    late = synthetic({"modal/_a": "from rockflex.modal._b import x", "modal/_b": "def f():\n    from . import _a"})
-    assert {"rockflex.modal._a", "rockflex.modal._b"} == set(cycle(imports(late), late))
+    ring = synthetic({"structure/_a": "from rockflex.structure._b import x", "structure/_b": "from . import _a"})
+    assert {"rockflex.structure._a", "rockflex.structure._b"} == set(cycle(imports(ring), ring))
+    late = synthetic(
+        {"structure/_a": "from rockflex.structure._b import x", "structure/_b": "def f():\n    from . import _a"}
+    )
+    assert {"rockflex.structure._a", "rockflex.structure._b"} == set(cycle(imports(late), late))
 
 
 def test_a_careless_module_is_seen() -> None:
     text = '"""A docstring."""\n'
-    assert careless({"rockflex.modal": text * MAX_LINES}) == []
-    assert careless({"rockflex.modal": text * (MAX_LINES + 1)}) == [f"rockflex.modal has {MAX_LINES + 1} lines"]
-    assert careless({"rockflex.modal": "x = 1"}) == ["rockflex.modal has no docstring"]
+    assert careless({"rockflex.structure": text * MAX_LINES}) == []
+    assert careless({"rockflex.structure": text * (MAX_LINES + 1)}) == [f"rockflex.structure has {MAX_LINES + 1} lines"]
+    assert careless({"rockflex.structure": "x = 1"}) == ["rockflex.structure has no docstring"]
     assert careless({"rockflex.wizard._a": text}) == ["rockflex.wizard._a belongs to no layer of the table"]
 
 

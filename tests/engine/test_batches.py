@@ -8,7 +8,8 @@ import pytest
 from engine.systems import GRAVITY, ball, bilinear
 from engine.test_systems import uncompiled
 from rockflex import InputError, SolverError
-from rockflex.engine import Batch, Event, LinearPhase, Run, StateLayout, System
+from rockflex.engine import Event, LinearPhase, Run, StateLayout, System
+from rockflex.engine.batch import Batch
 from rockflex.engine.tables import MIRRORS, Mirror, tables_of
 
 

@@ -9,7 +9,8 @@ from scipy.special import ellipk
 
 from engine.test_systems import uncompiled
 from rockflex import InputError, SolverError
-from rockflex.engine import Event, Field, LinearPhase, NonlinearPhase, Run, StateLayout, System
+from rockflex.engine import Event, LinearPhase, NonlinearPhase, Run, StateLayout, System
+from rockflex.engine.field import Field
 
 GRAVITY, LENGTH = 9.81, 1.7
 LAYOUT = StateLayout(place=1, velocity=1)

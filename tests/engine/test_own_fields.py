@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 import rockflex as rf
 from engine.test_systems import uncompiled
 from rockflex import InputError
-from rockflex.engine import Event, Field, NonlinearPhase, Run, StateLayout, System
+from rockflex.engine import Event, NonlinearPhase, Run, StateLayout, System
+from rockflex.engine.field import Field
 
 GRAVITY, RADIUS, DAMPING = 9.81, 2.2, 0.3  # m/s², m, 1/s
 MOAT, RESTITUTION = 0.06, 0.5  # rad

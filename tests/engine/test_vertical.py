@@ -6,7 +6,8 @@ from scipy.integrate import solve_ivp
 
 from engine.test_systems import uncompiled
 from rockflex import InputError
-from rockflex.engine import Batch, Event, LinearPhase, Rest, Run, StateLayout, System
+from rockflex.engine import Event, LinearPhase, Rest, Run, StateLayout, System
+from rockflex.engine.batch import Batch
 from rockflex.engine.shaken import MAX_FED, NODES, shaken_of
 
 OMEGA, GAP, H = 7.0, 0.05, 0.02

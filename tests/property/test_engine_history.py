@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rockflex import Frame, InitialState, simulate
-from rockflex.models import GROUND, HEADER
+from rockflex.models._state_layout import GROUND, HEADER
 from strategies import frame_arguments, stretches
 
 settings_ = settings(max_examples=80, deadline=None)

@@ -22,7 +22,7 @@ import rockflex as rf
 from builders import make_frame
 from record_samples import SEARCH_RESULTS, cosmos, esm, geonet, knet
 from rockflex.motion._record_table import read_record_table
-from rockflex.study.folders import _lock
+from rockflex.studies.folders import _lock
 from toy_study import ToyPlan, opened, run_study
 
 FRAME = """

@@ -6,8 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from rockflex.modal import modal_properties, rocking_properties
-from rockflex.structure import Frame
+from rockflex.structure import Frame, modal_properties, rocking_properties
 
 positive = st.floats(0.1, 10.0)
 entries = st.floats(-1.0, 1.0)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 from rockflex.motion import GroundMotion, one_sine_pulse, read_at2, read_motion, ricker_pulse
 from rockflex.motion._suite import pack_decimal_samples, unpack_decimal_samples
 

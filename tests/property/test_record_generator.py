@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 
 UNITS = {
     "g": (GRAVITY, ["g", "G", "g's"]),

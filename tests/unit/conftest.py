@@ -8,8 +8,8 @@ import rockflex as rf
 from design_case import LEVELS, STRUCTURE, WIDTHS
 from drawn_studies import FRAMES, MODELS, SUITE
 from rockflex.papers.silva_stojadinovic_2024.population import run_population
-from rockflex.study.cloud import run_cloud
-from rockflex.study.incremental import run_incremental
+from rockflex.studies.cloud import run_cloud
+from rockflex.studies.incremental import run_incremental
 
 
 @pytest.fixture(scope="session")
@@ -51,6 +51,6 @@ EMPTY = '<svg viewBox="0 0 1 1"></svg>'
 @pytest.fixture
 def undrawn(monkeypatch):
     """Reports whose figures are empty, for tests of their words and numbers: drawing takes most of the time."""
-    import rockflex.plot
+    import rockflex.plot._figures
 
-    monkeypatch.setattr(rockflex.plot, "figure_as_svg", lambda figure: EMPTY)
+    monkeypatch.setattr(rockflex.plot._figures, "figure_as_svg", lambda figure: EMPTY)

@@ -7,9 +7,12 @@ import pytest
 
 import rockflex as rf
 from builders import NO_MODES, frame_values
-from rockflex.models import Model, accelerations_at_states, acting_side, parse_model, reactions
-from rockflex.response import response_of_solution, tracked_quantities
-from rockflex.solve import Engine
+from rockflex.models import Model, parse_model
+from rockflex.models._prepared_model import PreparedModel
+from rockflex.models._reactions import reactions
+from rockflex.models._values_at_states import accelerations_at_states, acting_side
+from rockflex.response._peaks import tracked_quantities
+from rockflex.response._respond import response_of_solution
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import BoucWen, CompleteModel, Shaking, Structure
@@ -44,7 +47,7 @@ def model_of(label, **options):
 
 def run(model, acceleration, dt, vertical=None, *, history=True, **options):
     tracked = tracked_quantities(model)
-    engine = Engine(model, tracked.peaks.quantities)
+    engine = PreparedModel(model, tracked.peaks.quantities)
     return response_of_solution(
         model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options), tracked
     )

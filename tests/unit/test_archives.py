@@ -10,7 +10,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._archives import ArchiveError, ArchiveLimits, archive_bytes, array_from_npy, open_archive
+from rockflex.foundation.archives import ArchiveError, ArchiveLimits, archive_bytes, array_from_npy, open_archive
 from rockflex.web._folders import unpacked_record_files
 from rockflex.web._projects import state_of_project
 from rockflex.web._refusal import Refusal

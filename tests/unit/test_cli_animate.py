@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import app
-from rockflex.plot import animation
+from rockflex.cli._app import app
+from rockflex.plot.animation import _animate
 
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning", "ignore::ResourceWarning")
 
@@ -90,7 +90,7 @@ def test_a_stop_leaves_nothing(tmp_path, monkeypatch):
     def stopped(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(animation, "animate", stopped)
+    monkeypatch.setattr(_animate, "animate", stopped)
     result = invoke(STRUCTURE, "el-centro-1940", "--model", "2DOF-S", "--out", tmp_path / "run.gif")
     assert result.exit_code == 130
     assert not list(tmp_path.iterdir())

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
-from rockflex.cli import app
+from rockflex.cli._app import app
 
 SUITE = "fema-p695-far-field"
 NAMES = [f"{SUITE}/FF-{number}-a" for number in (1, 2, 3)]

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import app
+from rockflex.cli._app import app
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")

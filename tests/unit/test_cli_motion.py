@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from record_samples import at2, cosmos, knet
 from rockflex import InputError, RecordWarning, load_suite, read_motion
-from rockflex.cli import app
+from rockflex.cli._app import app
 from rockflex.cli._find_motions import embedded_suite_facts, find_motions
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]

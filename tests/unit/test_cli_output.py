@@ -19,9 +19,10 @@ from typer.testing import CliRunner
 
 import rockflex
 from rockflex import InputError
-from rockflex.cli import _console, app
+from rockflex.cli import _console
 from rockflex.cli import _output as output
-from rockflex.study import progress
+from rockflex.cli._app import app
+from rockflex.studies import progress
 
 
 def contents(folder):
@@ -245,7 +246,7 @@ def test_a_command_that_is_ended_leaves_no_rubbish(tmp_path, sign, exists):
     program = (
         "import sys, time\nfrom rockflex.cli import _modes, main\n"
         "def wait(*_):\n    print('at work', flush=True)\n    time.sleep(60)\n"
-        "import rockflex.plot\nrockflex.plot.save_figure = wait\n"
+        "import rockflex.plot._figures as figures\nfigures.save_figure = wait\n"
         "sys.argv = ['rockflex', 'modes', sys.argv[1], '--out', sys.argv[2]]\nmain()"
     )
     structure = str(ROOT / "examples" / "structure_1.toml")

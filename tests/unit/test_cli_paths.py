@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from builders import frame_values
-from rockflex.cli import main
+from rockflex.cli._app import main
 
 FRAME = "\n".join(f"{name} = {value}" for name, value in frame_values(n_stories=2).items())
 STRUCTURE = f"[frame]\n{FRAME}\n"
@@ -202,7 +202,7 @@ def test_an_output_that_takes_nothing_ends_without_a_traceback(arguments, redire
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="there Ctrl-C goes to a whole group of processes")
-@pytest.mark.parametrize("module", ["typer", "rockflex.cli", "numpy", "rockflex.modal"])
+@pytest.mark.parametrize("module", ["typer", "rockflex.cli", "numpy", "rockflex.structure"])
 def test_ctrl_c_during_imports_ends_without_a_traceback(module, place):
     program = (
         "import sys\n"

@@ -14,10 +14,11 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _batch, _run_results, app
+from rockflex.cli import _batch, _run_results
 from rockflex.cli import _console as console
-from rockflex.response import PEAKS
-from rockflex.study import PreparedCase
+from rockflex.cli._app import app
+from rockflex.response._response import PEAKS
+from rockflex.studies import PreparedCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
@@ -260,7 +261,7 @@ def test_nothing_is_written_when_a_figure_fails(tmp_path, monkeypatch):
     def fail(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("rockflex.plot.save_figure", fail)
+    monkeypatch.setattr("rockflex.plot._figures.save_figure", fail)
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
     assert result.exit_code == 2
     assert "Cannot write to" in result.stderr

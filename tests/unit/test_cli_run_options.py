@@ -11,9 +11,11 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _batch, app
-from rockflex.models import RockingModel, _label
-from rockflex.study import PreparedCase
+from rockflex.cli import _batch
+from rockflex.cli._app import app
+from rockflex.models import _label
+from rockflex.models._rocking_model import RockingModel
+from rockflex.studies import PreparedCase
 
 STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 FRAME = make_frame()

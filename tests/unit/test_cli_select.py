@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from report_page import read
-from rockflex.cli import app
-from rockflex.study import record_groups
+from rockflex.cli._app import app
+from rockflex.studies._run_matrix import record_groups
 
 G = 9.81
 SUITE = "fema-p695-far-field"

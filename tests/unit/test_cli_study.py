@@ -8,11 +8,10 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import rockflex as rf
-import rockflex.study._run_plan
-from rockflex.cli import app
-from rockflex.kinds import load_study
-from rockflex.study import parallel
-from rockflex.study._run_plan import map_chunks
+import rockflex.studies._run_plan
+from rockflex.cli._app import app
+from rockflex.studies import load_study, parallel
+from rockflex.studies._run_plan import map_chunks
 
 FRAME = """
 [structures.frame]
@@ -244,7 +243,7 @@ def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
         yield next(map_chunks(chunk, numbers, 1))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rockflex.study._run_plan, "map_chunks", interrupted)
+    monkeypatch.setattr(rockflex.studies._run_plan, "map_chunks", interrupted)
     file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
     done = invoke("cloud", file, "--out", tmp_path / "kept")
     assert done.exit_code == 130
@@ -261,7 +260,7 @@ def test_a_lost_cluster_exits_with_one(study, monkeypatch):
         message = "The Dask scheduler at tcp://x was lost"
         raise rf.ClusterError(message)
 
-    monkeypatch.setattr(rockflex.study._run_plan, "map_chunks_on_dask", lost)
+    monkeypatch.setattr(rockflex.studies._run_plan, "map_chunks_on_dask", lost)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://x")
     assert done.exit_code == 1
     assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr

@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import app
-from rockflex.plot import draw_alternatives
+from rockflex.cli._app import app
+from rockflex.plot._comparison import draw_alternatives
 
 SLENDER, WIDE = (make_frame(n_stories=2, period=0.5, aspect_ratio=ratio) for ratio in (8.0, 5.0))
 TIED = rf.Restrained(SLENDER, rf.Tendon(1e5, 5e6, yield_force=4e5))

@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from rockflex import InputError
-from rockflex._overflow import explaining_overflow
+from rockflex.foundation.overflow import explaining_overflow
 from rockflex.structure import _finite_elements
 
 CANTILEVER = {

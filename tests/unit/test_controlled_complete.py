@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import NO_MODES, frame_values
-from rockflex.models import HEADER
+from rockflex.models._state_layout import HEADER
 from twins import impact_laws
 from twins.complete import complete_frame
 from twins.complete_model import BoucWen, Structure

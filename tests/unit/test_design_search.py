@@ -30,10 +30,11 @@ from design_search_case import (
     replaced,
 )
 from drawing import drawn
-from rockflex.cli import app
-from rockflex.study import ChunkedPlan
-from rockflex.study.design import DesignStudy, stored_design_search
-from rockflex.study.design._design_search import MarginSurface
+from rockflex.cli._app import app
+from rockflex.studies._plan import ChunkedPlan
+from rockflex.studies.design import DesignStudy
+from rockflex.studies.design._design_search import MarginSurface
+from rockflex.studies.design._design_study import stored_design_search
 
 
 @pytest.fixture(scope="module")
@@ -334,9 +335,9 @@ def test_damaged_arguments_of_a_search(call, message):
 
 
 def test_the_plan_tells_its_runs_before(law):
-    from rockflex.study._arguments import rocking_properties_of
-    from rockflex.study._run_matrix import study_matrix
-    from rockflex.study.design import DesignSearchPlan
+    from rockflex.studies._arguments import rocking_properties_of
+    from rockflex.studies._run_matrix import study_matrix
+    from rockflex.studies.design._design_search import DesignSearchPlan
 
     matrix = study_matrix([rocking_properties_of(STRUCTURE)], SUITE, "2DOF-S", "settle", None, None)
     plan = DesignSearchPlan(matrix, SEARCH, [SLOW], COST, SCALES, 200)

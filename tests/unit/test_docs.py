@@ -22,7 +22,7 @@ LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
 PRIVATE = re.compile(r"\brockflex(?:\.\w+)*\._\w|\brf\._\w|\bimport _\w")
 FEW = [f"FF-{number}-*" for number in (1, 3, 5, 9, 10, 19)]  # of an example's records: some stand still, some fall
-PLACES = ("study", "engine", "papers.silva_stojadinovic_2024.population")  # of names that the front does not have
+PLACES = ("studies", "engine", "papers.silva_stojadinovic_2024.population")  # of names that the front does not have
 GENERATED = ("gallery/", "../gallery/")
 
 

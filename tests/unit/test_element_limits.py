@@ -7,9 +7,9 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import HEADER
-from rockflex.response import tracked_quantities
-from rockflex.solve import Engine
+from rockflex.models._prepared_model import PreparedModel
+from rockflex.models._state_layout import HEADER
+from rockflex.response._peaks import tracked_quantities
 
 FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.6, aspect_ratio=7.0, damping_ratio=0.03)
 PLAIN = FRAME.rocking()
@@ -28,7 +28,7 @@ def peaks(elements, model="MDOF-S"):
 
 def engine_of(elements, n=2):
     model = rf.Model(n).of(rf.Restrained(FRAME, elements).rocking())
-    return Engine(model, tracked_quantities(model).peaks.quantities)
+    return PreparedModel(model, tracked_quantities(model).peaks.quantities)
 
 
 def residual(run):
@@ -114,7 +114,7 @@ def test_the_damped_rigid_block_in_closed_form():
     a = (theta_0 - balance) * two / (two - one)
     e = theta_0 - balance - a
     model = rf.Model(0).of(held)
-    engine = Engine(model, tracked_quantities(model).peaks.quantities)
+    engine = PreparedModel(model, tracked_quantities(model).peaks.quantities)
     dt = 0.01
     run = engine.run(np.zeros(30), dt, state=np.array([theta_0, 0.0]), history=True)
     time, theta = run.states[:, 0], run.states[:, HEADER]

@@ -6,7 +6,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.response import tracked_quantities
+from rockflex.response._peaks import tracked_quantities
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:500] * 2.5, 0.02)
 FRAME = make_frame(

@@ -7,14 +7,14 @@ import pytest
 
 import rockflex as rf
 from rockflex import InputError
-from rockflex._checks import (
+from rockflex.foundation.checks import (
     checked_damping_ratios,
     checked_finite,
     checked_finite_vector,
     checked_positive,
     checked_whole_number,
 )
-from rockflex.structure.file import StructureEntry
+from rockflex.structure.file._structure_entry import StructureEntry
 
 
 @pytest.mark.parametrize(

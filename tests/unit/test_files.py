@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
-from rockflex._files import check_regular_file, irregular_file_kind
-from rockflex.cli import app
+from rockflex.cli._app import app
+from rockflex.foundation.files import check_regular_file, irregular_file_kind
 from toy_study import ToyPlan, opened, run_study
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")

@@ -7,18 +7,16 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
-from rockflex.fragility import (
-    LIMIT_STATES,
+from rockflex.fragility import LIMIT_STATES, OVERTURNING, residual_rotation_limit_state
+from rockflex.fragility._limit_states import (
     NOMINAL,
     OVERTURNED,
-    OVERTURNING,
     ROCKING,
     TENDON_YIELD,
     UPLIFT,
     limit_state_label,
     nominal_rotation_symbol,
     observed_exceedance_fractions,
-    residual_rotation_limit_state,
     rotation_limit_state,
 )
 

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import simpson
 
 from rockflex import BoucWen, Ground, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
-from rockflex.models import accelerations_at_states, printed_reactions, reactions
+from rockflex.models._reactions import printed_reactions, reactions
+from rockflex.models._values_at_states import accelerations_at_states
 from rockflex.response._interpolation import quintic
 
 GRAVITY = 9.81

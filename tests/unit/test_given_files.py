@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._csv import table_as_csv
-from rockflex.cli import app
+from rockflex.cli._app import app
+from rockflex.foundation.csv import table_as_csv
 
 PULSE = rf.ricker_pulse(4.0, 0.6)
 

@@ -9,9 +9,10 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import RockingModel, _label
-from rockflex.structure.file import TomlTable, parse_toml_table
-from rockflex.study._ground_tables import GroundTable
+from rockflex.models import _label
+from rockflex.models._rocking_model import RockingModel
+from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
+from rockflex.studies._ground_tables import GroundTable
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()

@@ -10,7 +10,7 @@ from builders import make_frame
 from rockflex.models import parse_model
 from rockflex.models._spring_model import heave_at
 from rockflex.models._state_layout import branches_of_codes, codes_of_branches, n_branch_codes
-from rockflex.study._prepared_case import PreparedCase
+from rockflex.studies._prepared_case import PreparedCase
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
 P = FRAME.rocking()

@@ -13,8 +13,8 @@ import pytest
 
 from builders import make_frame
 from rockflex import GroundMotion, simulate, simulate_many
-from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.study.parallel import map_runs
+from rockflex.engine.stops import RunStoppedError, stopping_when
+from rockflex.studies.parallel import map_runs
 from rockflex.web._app import PageServer
 from rockflex.web._refusal import Refusal
 

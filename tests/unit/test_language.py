@@ -18,12 +18,11 @@ from typer.testing import CliRunner
 import rockflex as rf
 from page_texts import texts_of_answers, texts_of_scripts
 from report_case import FRAME, HELD, PULSE, SPRINGS, runs
-from rockflex._language import Language, catalogue, chosen_language, translated, use_language
 from rockflex.cli._app import app
+from rockflex.foundation.language import Language, catalogue, chosen_language, translated, use_language
 from rockflex.fragility import LIMIT_STATES
 from rockflex.fragility._jackknife import ONE_RECORDING
 from rockflex.fragility._outcomes import FEW_RUNS, PARTS
-from rockflex.modal import BARS
 from rockflex.plot._design import _AXES
 from rockflex.plot._fragility import _QUANTITIES as _CLOUD_QUANTITIES
 from rockflex.plot._history import _QUANTITIES
@@ -34,8 +33,10 @@ from rockflex.report._publication_files import jinja_templates_in
 from rockflex.report.run._report_tables import ASSUMPTIONS, SIDES, STATUS
 from rockflex.report.run._set_page import STATISTIC_HEADS
 from rockflex.report.run._sheet import TEMPLATES
-from rockflex.response import DEMANDS, STATISTICS
+from rockflex.response._comparison import STATISTICS
+from rockflex.response._demands import DEMANDS
 from rockflex.response._limit_checks import KINDS, SOURCES
+from rockflex.structure._law_bars import BARS
 
 STRIPES = pd.DataFrame({"level": [0.2] * 10 + [0.4] * 10, "max_rotation": [0.001] * 8 + [0.01] * 12})
 STRIPES = STRIPES.assign(structure="a", model="MDOF-S", status="rocking", nominal_overturning=False)

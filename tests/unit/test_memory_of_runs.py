@@ -12,7 +12,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.study import PreparedCase
+from rockflex.studies import PreparedCase
 
 NOISE = np.random.default_rng(5).standard_normal((2, 100_000))
 FRAME = make_frame()

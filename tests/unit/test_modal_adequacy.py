@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.modal._uplifted import lowest_uplifted_frequencies
+from rockflex.structure._uplifted import lowest_uplifted_frequencies
 
 SHEAR, FLEXURE = math.inf, 0.0
 NO_LIMIT = {"base_moment": math.inf, "first_frequency": math.inf, "second_frequency": math.inf, "base_shear": math.inf}

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from rockflex._errors import InputError
-from rockflex.modal import modal_properties
+from rockflex.foundation.errors import InputError
+from rockflex.structure import modal_properties
 
 STORIES = [1, 2, 5, 20]
 

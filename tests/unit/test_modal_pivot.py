@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from builders import BY_HAND
-from rockflex.modal import Pivot
+from rockflex.structure import Pivot
 
 G = 9.81
 B, E = 1.2, 0.3

@@ -7,8 +7,8 @@ import pickle
 import numpy as np
 import pytest
 
-from rockflex._errors import InputError
-from rockflex.modal import FloorModes, RockingProperties, modal_properties, rocking_properties
+from rockflex.foundation.errors import InputError
+from rockflex.structure import FloorModes, RockingProperties, modal_properties, rocking_properties
 
 CHIMNEY_LIKE = {
     "omega": [1.66, 7.76],

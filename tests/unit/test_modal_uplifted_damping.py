@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.modal import _uplifted
-from rockflex.modal._uplifted import uplifted_damping_ratios
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, table_1_frame
+from rockflex.structure import _uplifted
+from rockflex.structure._uplifted import uplifted_damping_ratios
 
 
 def roots_of(p):

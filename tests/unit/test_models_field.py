@@ -5,18 +5,10 @@ import pytest
 
 from builders import NO_MODES, frame_values, vector_field
 from rockflex import BoucWen
-from rockflex.modal import RockingProperties
-from rockflex.models import (
-    HORIZONTAL,
-    LEFT_OUT,
-    LINEAR,
-    SWAY,
-    SWING,
-    VERTICAL,
-    Model,
-    Quantities,
-    nonlinear_system,
-)
+from rockflex.models import Model
+from rockflex.models._nonlinear_ground_system import nonlinear_system
+from rockflex.models._quantities import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, VERTICAL, Quantities
+from rockflex.structure import RockingProperties
 from twins import complete_model as twin
 from twins.complete import complete_frame
 

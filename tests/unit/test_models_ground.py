@@ -7,7 +7,8 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import RockingModel, _label
+from rockflex.models import _label
+from rockflex.models._rocking_model import RockingModel
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()

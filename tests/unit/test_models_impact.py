@@ -8,8 +8,11 @@ import pytest
 
 from builders import make_frame
 from rockflex import ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
-from rockflex.models import ForgottenLaw, Quantities, RockingModel, SidedRestitution, nonlinear_system
+from rockflex.models._impact import ForgottenLaw, SidedRestitution
 from rockflex.models._landing import velocities_after
+from rockflex.models._nonlinear_ground_system import nonlinear_system
+from rockflex.models._quantities import Quantities
+from rockflex.models._rocking_model import RockingModel
 
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
 ALL = FRAME.rocking()

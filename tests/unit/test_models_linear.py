@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from builders import make_frame
-from rockflex.models import Model, Quantities, RockingModel, system_on_rigid_ground
+from rockflex.models import Model
+from rockflex.models._quantities import Quantities
+from rockflex.models._rigid_ground_system import system_on_rigid_ground
+from rockflex.models._rocking_model import RockingModel
 
 GRAVITY = 9.81
 

@@ -7,15 +7,12 @@ import pytest
 
 from builders import make_frame
 from rockflex import BoucWen, Tendon
-from rockflex.models import (
-    Model,
-    Quantities,
-    linear_system_base,
-    linear_system_of,
-    nonlinear_system,
-    system_on_rigid_ground,
-)
+from rockflex.models import Model
 from rockflex.models._elements import base_equations_of
+from rockflex.models._linear_system import linear_system_base, linear_system_of
+from rockflex.models._nonlinear_ground_system import nonlinear_system
+from rockflex.models._quantities import Quantities
+from rockflex.models._rigid_ground_system import system_on_rigid_ground
 
 GRAVITY = 9.81
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=9.0, damping_ratio=0.03)

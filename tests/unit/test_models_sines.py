@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from builders import make_frame, vector_field
-from rockflex.models import SWAY, RockingModel
+from rockflex.models._quantities import SWAY
+from rockflex.models._rocking_model import RockingModel
 
 SMALL, SMALLER = math.pi / 4, 0.125  # rad: up to which there are series
 ROTATIONS = np.concatenate(

@@ -7,7 +7,8 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import Model, SidedRestitution, housner, parse_model
+from rockflex.models import Model, housner, parse_model
+from rockflex.models._impact import SidedRestitution
 from rockflex.motion import quiet_motion
 
 FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0)

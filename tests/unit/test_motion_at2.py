@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
 from rockflex.motion import read_at2, read_motion
 
 VALUES = np.array([0.001, -0.02, 0.3, -0.3456e-3, 0.0, 0.125])

@@ -11,18 +11,11 @@ from scipy.linalg import expm
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import (
-    GROUND,
-    HEADER,
-    RISE,
-    SIDE,
-    TIME,
-    Model,
-    MotionBetween,
-    RockingModel,
-    accelerations_at_states,
-)
-from rockflex.models._values_at_states import _codes
+from rockflex.models import Model
+from rockflex.models._motion_between_states import MotionBetween
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.models._values_at_states import _codes, accelerations_at_states
 from twins.exact import Exact
 from twins.frame import frame_properties
 

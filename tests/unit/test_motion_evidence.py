@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 
 VALUES = [round(0.2 * np.sin(0.3 * k) * np.exp(-(((k - 30) / 12) ** 2)), 6) for k in range(60)]
 PEAK = max(map(abs, VALUES))

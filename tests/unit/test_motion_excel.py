@@ -11,6 +11,7 @@ import pytest
 
 import rockflex as rf
 from rockflex.motion import _excel
+from rockflex.motion._columns import record_csv
 
 openpyxl = pytest.importorskip("openpyxl")
 ROWS = [[0.0, 0.1], [0.01, -0.25], [0.02, 1 / 3], [0.03, 0]]
@@ -214,7 +215,7 @@ def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_
 
 def test_a_written_record_that_a_spreadsheet_saved_keeps_what_is_known(tmp_path):
     info = rf.RecordInfo(event="Kocaeli, Turkey", year=1999, scale=1.5)
-    written = rf.motion.record_csv(rf.GroundMotion([0.0, 1.0, 0.0], 0.01, metadata=info))
+    written = record_csv(rf.GroundMotion([0.0, 1.0, 0.0], 0.01, metadata=info))
     (tmp_path / "a.csv").write_text(re.sub("^#.*", r"\g<0>,", written, flags=re.MULTILINE))
     rows = [[line] if "#" in line else line.split(",") for line in written.splitlines()]
     for file in (tmp_path / "a.csv", write_excel(tmp_path, {"S": rows})):

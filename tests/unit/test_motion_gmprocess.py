@@ -178,7 +178,7 @@ def test_what_it_raises_is_told_by_name(write, installed, capsys, caplog):
 
 
 def test_the_page_does_not_use_it(write, installed):
-    from rockflex.motion import read_motion_without_obspy
+    from rockflex.motion._readers import read_motion_without_obspy
 
     installed(Trace())
     with pytest.raises(rf.InputError, match="this is a file of Turkey's NSMN"):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfreqz
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo
 
 MOTION = GroundMotion(np.random.default_rng(5).normal(size=400), 0.01, "noise")

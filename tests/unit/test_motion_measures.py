@@ -11,23 +11,15 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 import rockflex as rf
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex.cli import app
-from rockflex.kinds import load_study
-from rockflex.motion import (
-    MEASURES,
-    GroundMotion,
-    IntensityMeasure,
-    MeasureInput,
-    quiet_motion,
-    record_measures,
-    scalable_measure,
-    scalable_measures,
-)
+from rockflex.cli._app import app
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.motion import MEASURES, GroundMotion, IntensityMeasure, quiet_motion
+from rockflex.motion._measures import MeasureInput, record_measures, scalable_measure, scalable_measures
 from rockflex.plot import plot_clouds
-from rockflex.study import run_plan
-from rockflex.study.stripes import StripeStudy
+from rockflex.studies import load_study
+from rockflex.studies._run_plan import run_plan
+from rockflex.studies.stripes import StripeStudy
 
 RECORDS = [GroundMotion(np.random.default_rng(seed).normal(size=n), dt) for seed, n, dt in [(1, 40, 0.3), (2, 7, 0.02)]]
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]

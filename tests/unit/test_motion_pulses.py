@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockflex import motion as rm
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _pulses
 
 ONE_LENGTH = [rm.one_sine_pulse, rm.one_cosine_pulse, rm.half_sine_pulse, rm.rectangular_pulse]

@@ -8,8 +8,8 @@ import pytest
 
 import rockflex as rf
 from record_samples import SEARCH_RESULTS, at2, cosmos, esm, knet
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, RecordWarning
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError, RecordWarning
 from rockflex.motion import read_suite
 from rockflex.motion._record_table import read_record_table
 

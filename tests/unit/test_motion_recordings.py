@@ -9,9 +9,9 @@ import pytest
 import rockflex as rf
 from design_case import STRUCTURE
 from record_samples import at2
-from rockflex.motion import component_direction
+from rockflex.motion._record_info import component_direction
 from rockflex.motion._recordings import file_names_text, pair_vertical_records
-from rockflex.study import overturning_scales
+from rockflex.studies import overturning_scales
 
 VERTICAL = (
     "RSN9_BORREGO_B-ELC-UP.AT2",

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.signal import StateSpace, lsim
 
 import rockflex as rf
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import GroundMotion, half_sine_pulse, one_sine_pulse, rectangular_pulse
 
 RECORD = GroundMotion(np.random.default_rng(3).normal(size=25), 0.1)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
 from rockflex.motion import GroundMotion, Suite, load_suite, suite_names
 from rockflex.motion._suite import DATA, pack_decimal_samples, read_embedded_suite, unpack_decimal_samples
 

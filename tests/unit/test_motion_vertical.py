@@ -9,7 +9,9 @@ import pytest
 
 from record_samples import at2
 from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, read_at2, read_motion
-from rockflex.motion import MEASURES, MeasureInput, check_horizontal_component, record_measures, vertical_measures
+from rockflex.motion import MEASURES
+from rockflex.motion._ground_motion import check_horizontal_component
+from rockflex.motion._measures import MeasureInput, record_measures, vertical_measures
 
 ALONG = np.array([0.0, 2.0, -4.0, 1.0, 0.0])
 UPWARDS = np.array([0.0, -1.0, 3.0, 0.5, 0.0])

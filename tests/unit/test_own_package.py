@@ -64,7 +64,7 @@ READ = """
 import rockflex as rf
 from rockflex.motion import MEASURES
 from rockflex.fragility import LIMIT_STATES
-from rockflex.kinds import KINDS
+from rockflex.studies import KINDS
 from rockflex_tank.elements import Flag
 from rockflex_tank.structures import Tank
 

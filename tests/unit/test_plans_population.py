@@ -19,7 +19,7 @@ from rockflex.papers.silva_stojadinovic_2024.population import (
     population_statistics,
     run_population,
 )
-from rockflex.study import run_plan
+from rockflex.studies._run_plan import run_plan
 
 RECORDS = {"suites": ["fema-p695-near-field-no-pulse"], "include": ["NFNP-15-*", "NFNP-16-*"]}
 PAIRS = 24

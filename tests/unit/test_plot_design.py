@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from drawing import drawn, notes
-from rockflex.cli import app
+from rockflex.cli._app import app
 
 HEIGHT = 10.0
 B = np.array([1.0, 1.5, 2.0, 2.5])

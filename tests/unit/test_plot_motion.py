@@ -8,7 +8,7 @@ from scipy.integrate import cumulative_trapezoid
 
 import rockflex as rf
 from drawing import drawn
-from rockflex._number_format import short_number, unit_with_prefix
+from rockflex.foundation.number_format import short_number, unit_with_prefix
 from rockflex.plot import plot_motion, plot_selection
 
 RECORD = rf.load_suite("el-centro-1940")[0]

@@ -18,7 +18,7 @@ from matplotlib.text import Text
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.plot import save_figure
 
 FRAME = make_frame()

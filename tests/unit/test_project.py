@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import app
+from rockflex.cli._app import app
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 TIED = rf.Restrained(rf.Eccentric(FRAME, 0.1), [rf.Tendon(1e5, 5e6, yield_force=4e5), rf.GapBar(1e6, 0.01)])

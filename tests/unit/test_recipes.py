@@ -15,8 +15,8 @@ import rockflex
 from doc_blocks import Block, blocks_of, run_blocks
 from own_package_site import path_with, run
 from rockflex.fragility import LIMIT_STATES
-from rockflex.kinds import KINDS
 from rockflex.motion import FORMATS, MEASURES
+from rockflex.studies import KINDS
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## Recipes")[2]
@@ -115,7 +115,7 @@ stiffness = 1e7
 
 @pytest.mark.slow
 def test_an_element_and_a_reader_in_the_package(copied, monkeypatch):
-    assert [path for path, _ in blocks_of_files()] == ["modal/_law_bars.py", "motion/_tsv.py"]
+    assert [path for path, _ in blocks_of_files()] == ["structure/_law_bars.py", "motion/_tsv.py"]
     (copied / "held.toml").write_text(HELD, "utf-8")
     (copied / "records").mkdir()
     (copied / "records" / "a.dat2").write_text("TSV dt=0.01 n=3\n0\n250\n-100\n", "utf-8")

@@ -9,7 +9,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from report_page import read
-from rockflex.response import DEMANDS
+from rockflex.response._demands import DEMANDS
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 BLOCK = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)

@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import random_shaking
-from rockflex.cli import app
-from rockflex.models import parse_model
-from rockflex.motion import record_csv
-from rockflex.solve import Task, WorkLimitError, _work
-from rockflex.study import PreparedCase
-from rockflex.study.spec import GroundTable
+from rockflex.cli._app import app
+from rockflex.models import _work, parse_model
+from rockflex.models._work import Task, WorkLimitError
+from rockflex.motion._columns import record_csv
+from rockflex.studies import PreparedCase
+from rockflex.studies.spec import GroundTable
 from rockflex.web import _state
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view

@@ -13,18 +13,15 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from page import check_page
-from rockflex.cli import _kept_work, _reproduce, _reproduction, app
+from rockflex.cli import _kept_work, _reproduce, _reproduction
+from rockflex.cli._app import app
 from rockflex.cli._kept_work import KeptWork
 from rockflex.cli._reproduction import Done, Job, planned_jobs
-from rockflex.papers.silva_stojadinovic_2024 import (
-    TARGETS,
-    PaperRecords,
-    _section_3_3,
-    finish_target,
-    reproduce_targets,
-    target_pieces,
-)
-from rockflex.report import PublicationReport, report_numbers_to_csv
+from rockflex.papers.silva_stojadinovic_2024 import _section_3_3
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, finish_target, reproduce_targets, target_pieces
+from rockflex.report._document import PublicationReport
+from rockflex.report._publication_files import report_numbers_to_csv
 
 
 def invoke(*arguments):
@@ -261,7 +258,7 @@ from pathlib import Path
 import typer
 
 from rockflex.cli import _reproduce, _reproduction
-from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
 
 _reproduction.ENOUGH_FOR_PROCESSES = 0.0
 if __name__ == "__main__":
@@ -333,7 +330,7 @@ def test_the_seed_reaches_the_records(monkeypatch):
         given.append((arguments, named))
         raise rf.InputError("enough")
 
-    monkeypatch.setattr("rockflex.papers.silva_stojadinovic_2024.PaperRecords", kept)
+    monkeypatch.setattr("rockflex.papers.silva_stojadinovic_2024._inputs.PaperRecords", kept)
     assert invoke("figure-9", "--seed", 5, "--seeds", 12).exit_code == 2
     assert invoke("figure-9").exit_code == 2
     assert given == [((None, 12, 5), {}), ((None, 20, 2024), {})]

@@ -9,9 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
-from rockflex.papers.silva_stojadinovic_2024._comparison import MAX_INTERVAL_WIDTH, ResampledInterval, printed_range
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    MAX_INTERVAL_WIDTH,
+    RemarkKind,
+    ResampledInterval,
+    Verdict,
+    printed_range,
+)
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER
 from rockflex.papers.silva_stojadinovic_2024._section_3_2 import friction_intervals
 from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency_by_elements, ritz_modes_with_slices

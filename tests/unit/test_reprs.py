@@ -6,7 +6,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._html import html_table
+from rockflex.foundation.html import html_table
 
 FRAME = make_frame(n_stories=8, period=0.6, aspect_ratio=8.0)
 SUITE = rf.load_suite("fema-p695-far-field")

@@ -13,9 +13,10 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._constants import GRAVITY
-from rockflex.models import ForgottenLaw, RockingModel, SidedRestitution
-from rockflex.study import PreparedCase
+from rockflex.foundation.constants import GRAVITY
+from rockflex.models._impact import ForgottenLaw, SidedRestitution
+from rockflex.models._rocking_model import RockingModel
+from rockflex.studies import PreparedCase
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[60:210] * 2.5, 0.02, name="El Centro, début")
 FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=7.0, damping_ratio=0.03)

@@ -16,9 +16,10 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex.engine.solution import Solution
 from rockflex.models import Model
-from rockflex.response import response_of_solution, tracked_quantities
-from rockflex.solve import Solution
+from rockflex.response._peaks import tracked_quantities
+from rockflex.response._respond import response_of_solution
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)

@@ -8,8 +8,8 @@ import pytest
 
 import rockflex as rf
 from builders import PROPERTIES, make_frame, random_shaking
-from rockflex.response import UNITS_OF_HISTORY
 from rockflex.response._interpolation import quintic_between
+from rockflex.response._tables import UNITS_OF_HISTORY
 
 FRAME = make_frame(n_stories=3, period=0.6, aspect_ratio=8.0)
 MOTION = rf.GroundMotion(random_shaking(4, 9.0, 4.0, 0.02), 0.02, "random")

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-import rockflex._files
+import rockflex.foundation.files
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
-from rockflex._number_format import rounded_number
-from rockflex._units import KN
+from rockflex.foundation.number_format import rounded_number
+from rockflex.foundation.units import KN
 from rockflex.report.run import _report_page, _run_checks
-from rockflex.response import warnings_of_run
+from rockflex.response._response import warnings_of_run
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {
@@ -355,7 +355,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(rockflex._files, "write_file_atomically", full)
+    monkeypatch.setattr(rockflex.foundation.files, "write_file_atomically", full)
     with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
         rf.write_report(one, path)
     assert path.read_bytes() == before

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rockflex import InputError, SolverError
-from rockflex._checks import (
+from rockflex.foundation.checks import (
     checked_finite,
     checked_finite_matrix,
     checked_finite_vector,
@@ -16,8 +16,8 @@ from rockflex._checks import (
     checked_positive,
     checked_whole_number,
 )
-from rockflex._files import checked_file_path
-from rockflex._shown import number_with_noun, shortened, shown
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.shown import number_with_noun, shortened, shown
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,12 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
+from rockflex.engine.solution import Excitation
 from rockflex.models import parse_model
-from rockflex.response import NAMES, STATUSES, response_columns_of_runs, response_of_solution
-from rockflex.solve import Excitation, WorkLimitError, run_all
-from rockflex.study import PreparedCase
+from rockflex.models._prepared_model import run_all
+from rockflex.models._work import WorkLimitError
+from rockflex.response._respond import NAMES, STATUSES, response_columns_of_runs, response_of_solution
+from rockflex.studies import PreparedCase
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration
 FRAME = rf.Frame(**frame_values(n_stories=3, base_mass=60e3, period=0.5, aspect_ratio=8.0, damping_ratio=0.03))

@@ -7,7 +7,8 @@ import pytest
 
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, rigid_block, simulate
-from rockflex.models import GROUND, HEADER, Model
+from rockflex.models import Model
+from rockflex.models._state_layout import GROUND, HEADER
 from twins.controlled import ControlledTwin
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties

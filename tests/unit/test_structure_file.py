@@ -12,8 +12,9 @@ from pydantic import ValidationError
 
 import rockflex as rf
 from builders import PROPERTIES, frame_values
-from rockflex.modal import PLACE
-from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, TomlTable, parse_toml_table, schema_key_of_field
+from rockflex.structure._attachment import PLACE
+from rockflex.structure.file._structure_entry import ELEMENTS, KINDS, StructureEntry
+from rockflex.structure.file._toml_table import TomlTable, parse_toml_table, schema_key_of_field
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}

@@ -8,7 +8,7 @@ import pytest
 import scipy.linalg
 import sympy
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.structure import Frame
 
 GOOD = {

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from rockflex._errors import InputError
-from rockflex.modal import modal_properties, rocking_properties
-from rockflex.structure import LumpedStructure
+from rockflex.foundation.errors import InputError
+from rockflex.structure import LumpedStructure, modal_properties, rocking_properties
 
 GOOD = {
     "masses": [2.0, 1.0],

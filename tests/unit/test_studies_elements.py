@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study import run_plan
+from rockflex.studies._run_plan import run_plan
 
 if TYPE_CHECKING:
     from dask_cluster import Cluster

@@ -12,13 +12,13 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex import InputError
-from rockflex.cli import app
+from rockflex.cli._app import app
 from rockflex.models import parse_model
-from rockflex.structure.file import parse_toml_table
-from rockflex.study._arguments import expand_scale_range, parse_scale_range
-from rockflex.study._prepared_case import RunOptions, yielding_model_labels
-from rockflex.study._result_tables import OF_ELEMENTS, OF_GROUND
-from rockflex.study.spec import RunOptionKeys
+from rockflex.structure.file._toml_table import parse_toml_table
+from rockflex.studies._arguments import expand_scale_range, parse_scale_range
+from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
+from rockflex.studies._result_tables import OF_ELEMENTS, OF_GROUND
+from rockflex.studies.spec import RunOptionKeys
 
 STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 BASE = {

@@ -12,10 +12,11 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values, make_frame
-from rockflex.kinds import KINDS
-from rockflex.study import PivotLifts, count_pivot_lifts, record_groups, run_plan
-from rockflex.study._run_matrix import record_checksums, study_matrix
-from rockflex.study.cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.studies import KINDS
+from rockflex.studies._result_tables import PivotLifts, count_pivot_lifts
+from rockflex.studies._run_matrix import record_checksums, record_groups, study_matrix
+from rockflex.studies._run_plan import run_plan
+from rockflex.studies.cloud import CloudPlan, CloudStudy, run_cloud
 
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 STRUCTURES = [{"name": "stiff", "frame": FRAME}, {"frame": {**FRAME, "period": 1.0, "stiffness_ratio": 0.0}}]

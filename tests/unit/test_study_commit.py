@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import rockflex as rf
-from rockflex import _versions
-from rockflex._versions import git_commit
+from rockflex.foundation import versions
+from rockflex.foundation.versions import git_commit
 
 pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="there is no Git")
 TEXT = 'study = "population"\npairs = 3\nruns_per_chunk = 2\nrecords.suites = ["el-centro-1940"]\n'
@@ -109,7 +109,7 @@ def commits_of(part: Path) -> str:
 def test_a_study_without_a_file_or_a_repository_resumes_too(repository, tmp_path, monkeypatch):
     file, out = repository / "study.toml", tmp_path / "out"
     rf.fill_study(file, out, share=(1, 2))
-    monkeypatch.setattr(_versions, "_git_output", lambda *_: None)
+    monkeypatch.setattr(versions, "_git_output", lambda *_: None)
     assert "study commit" not in rf.fill_study(rf.PopulationStudy(**content()), tmp_path / "new").manifest.versions
     assert rf.fill_study(file, out).finished
 

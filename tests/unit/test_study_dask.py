@@ -13,9 +13,9 @@ import pytest
 import another_package
 from dask_cluster import Cluster
 from rockflex import InputError
-from rockflex.study import _dask_worker, parallel
-from rockflex.study.folders import StudyFolder
-from rockflex.study.parallel import ClusterError, map_chunks_on_dask
+from rockflex.studies import _dask_worker, parallel
+from rockflex.studies.folders import StudyFolder
+from rockflex.studies.parallel import ClusterError, map_chunks_on_dask
 from toy_study import DeadlyPlan, FailingPlan, FlakyPlan, ToyPlan, run_study
 
 pytestmark = pytest.mark.slow

@@ -9,9 +9,9 @@ import pytest
 
 import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
-from rockflex.study.design import DesignStudy
-from rockflex.study.design._designs import checked_half_widths, designs_of_structure
-from rockflex.study.design._exceedance_fit import design_limit_state
+from rockflex.studies.design import DesignStudy
+from rockflex.studies.design._designs import checked_half_widths, designs_of_structure
+from rockflex.studies.design._exceedance_fit import design_limit_state
 
 CURVE = {"im": [0.5, 30.0], "rate": [0.1, 2e-5]}
 SPECTRAL = {"level": None, "measure": "sa_t1", "hazard": CURVE}

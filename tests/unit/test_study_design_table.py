@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 import rockflex as rf
 from builders import make_frame
 from design_case import HAZARD, HEIGHT, WIDTHS
-from rockflex.fragility import bootstrap_weights, resampled_exceedance
+from rockflex.fragility._bootstrap import bootstrap_weights, resampled_exceedance
 from rockflex.fragility._regression import FirthScoringOptions, fit_logistic_curves
 
 

@@ -20,9 +20,10 @@ from pyarrow import parquet
 
 import rockflex as rf
 from builders import frame_values
-from rockflex import InputError, _files
-from rockflex.study.folders import StudyFolder, _folder
-from rockflex.study.folders._parts import PartError, encode_part, part_at, part_of_content
+from rockflex import InputError
+from rockflex.foundation import files
+from rockflex.studies.folders import StudyFolder, _folder
+from rockflex.studies.folders._parts import PartError, encode_part, part_at, part_of_content
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -336,7 +337,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         def full(_: int) -> None:
             raise OSError(28, "No space left on device")
 
-        monkeypatch.setattr(_files.os, "fsync", full)
+        monkeypatch.setattr(files.os, "fsync", full)
         with pytest.raises(InputError, match=r"No room on the disk of .*: 0\.\d+ MB .* MB are free \(No space left on"):
             folder.write(1, PLAN.chunk(1))
         monkeypatch.undo()

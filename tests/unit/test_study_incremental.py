@@ -10,9 +10,9 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.study import run_plan
-from rockflex.study._run_matrix import study_matrix
-from rockflex.study.incremental import (
+from rockflex.studies._run_matrix import study_matrix
+from rockflex.studies._run_plan import run_plan
+from rockflex.studies.incremental import (
     IncrementalStudy,
     ScaleLadder,
     incremental_capacities,
@@ -21,7 +21,7 @@ from rockflex.study.incremental import (
     rising_scales,
     run_incremental,
 )
-from rockflex.study.stripes import StripePlan, StripeStudy, stripe_counts
+from rockflex.studies.stripes import StripePlan, StripeStudy, stripe_counts
 
 BLOCK = rf.rigid_block(0.2, 1.5)
 PULSE = rf.one_sine_pulse(2.0, 1.0, dt=0.01)

@@ -15,8 +15,8 @@ import pytest
 
 import toy_study
 from rockflex import InputError
-from rockflex.study.folders import StudyFolder, _lock
-from rockflex.study.folders._lock import lock_holder, locked_folder
+from rockflex.studies.folders import StudyFolder, _lock
+from rockflex.studies.folders._lock import lock_holder, locked_folder
 from toy_study import ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=2)
@@ -59,7 +59,7 @@ def test_the_lock_goes_with_its_object(tmp_path: Path) -> None:
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_forked_child_does_not_take_the_lock_along(tmp_path: Path) -> None:
     program = (
-        "import os, sys\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import *\n"
+        "import os, sys\nfrom pathlib import Path\nfrom rockflex.studies.folders._lock import *\n"
         "lock = locked_folder(Path(sys.argv[1]))\npid = os.fork()\n"
         "if not pid:\n    lock.release(); os._exit(0)\n"
         "os.waitpid(pid, 0); check_folder_locked(lock); print('held')"
@@ -149,7 +149,7 @@ def test_without_hard_links_a_lock_is_made_as_well(tmp_path: Path, monkeypatch: 
 def test_a_killed_process_leaves_a_named_lock_or_none(tmp_path: Path) -> None:
     """At every system call of the taking: the next process gets the folder, and no temporary file stays."""
     program = (
-        "import os, sys, signal\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import locked_folder\n"
+        "import os, sys, signal\nfrom pathlib import Path\nfrom rockflex.studies.folders._lock import locked_folder\n"
         "left = int(sys.argv[2])\n"
         "def count(event, _):\n"
         "    global left\n"
@@ -174,7 +174,7 @@ def test_of_many_that_find_a_dead_lock_one_gets_it(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(lock_of(dead_pid()))
     program = (
-        "import sys, time\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import *\n"
+        "import sys, time\nfrom pathlib import Path\nfrom rockflex.studies.folders._lock import *\n"
         "from rockflex import InputError\nsys.stdin.readline()\n"
         "try:\n    lock = locked_folder(Path(sys.argv[1]))\n    print('mine', flush=True)\n"
         "    sys.stdin.readline(); check_folder_locked(lock)\n"

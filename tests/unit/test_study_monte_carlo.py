@@ -11,9 +11,15 @@ import pytest
 from scipy import stats
 
 import rockflex as rf
-from rockflex.kinds import KINDS, StudyFindings
-from rockflex.study import run_plan
-from rockflex.study._random_variables import RandomVariables, formula_value, is_formula, names_in_formula, uniform_draws
+from rockflex.studies import KINDS, StudyFindings
+from rockflex.studies._random_variables import (
+    RandomVariables,
+    formula_value,
+    is_formula,
+    names_in_formula,
+    uniform_draws,
+)
+from rockflex.studies._run_plan import run_plan
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "controlled_rocking_walls.toml"
 G = 9.81

@@ -9,8 +9,8 @@ import pytest
 
 import rockflex as rf
 from own_study import FRAME, OwnBar, Tower, own_ground, random_frame, roof
-from rockflex.kinds import KINDS
-from rockflex.study.design import stored_design_search
+from rockflex.studies import KINDS
+from rockflex.studies.design._design_study import stored_design_search
 
 SUITE = rf.load_suite("fema-p695-far-field")[:3]
 YIELDS = rf.YieldingStories(rf.Leaning(rf.Frame(**FRAME), 20e3), strengths=[300e3, 250e3, 140e3], post_yield_ratio=0.05)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rockflex import InputError
-from rockflex.solve import asked_to_stop
-from rockflex.study.parallel import (
+from rockflex.engine.stops import asked_to_stop
+from rockflex.studies.parallel import (
     MAX_TASK_RATE,
     MIN_TASK_TIME,
     TASKS_PER_THREAD,

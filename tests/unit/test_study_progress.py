@@ -9,7 +9,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
-from rockflex.study.progress import MAX_INTERVAL, MIN_INTERVAL, ProgressLogLines, progress_bar
+from rockflex.studies.progress import MAX_INTERVAL, MIN_INTERVAL, ProgressLogLines, progress_bar
 
 FRAME = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
 HELD = rf.Restrained(FRAME, rf.Tendon(initial_force=300e3, stiffness=2e6))
@@ -127,7 +127,7 @@ def test_the_time_left_is_that_of_the_whole_time(monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     monkeypatch.setattr(sys, "stderr", Terminal())
     now = iter([0.0, 0.0, 300.0, 300.0, 300.0, 300.0, 600.0, 600.0])
-    monkeypatch.setattr("rockflex.study.progress.perf_counter", lambda: next(now))
+    monkeypatch.setattr("rockflex.studies.progress.perf_counter", lambda: next(now))
     with progress_bar("Parts") as show:
         show(50, 100, "")
         for done in (51, 52, 53, 54, 60):

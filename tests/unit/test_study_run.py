@@ -13,10 +13,11 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
-from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds import KINDS, StudyFindings
-from rockflex.structure.file import StructureEntry
-from rockflex.study import ChunkedPlan, StudySpec, _run_plan
+from rockflex.engine.loops import LEVEL as VECTOR_LEVEL
+from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.studies import KINDS, StudyFindings, _run_plan
+from rockflex.studies._plan import ChunkedPlan
+from rockflex.studies.spec import StudySpec
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -51,7 +52,7 @@ def test_a_fit_that_fails_is_named():
 
 def test_the_registry_loads_no_heavy_library():
     heavy = {"numpy", "scipy", "numba", "pydantic", "pandas", "matplotlib", "pyarrow"}
-    program = f"import sys; from rockflex.kinds import KINDS; print(len(KINDS), *({heavy!r} & sys.modules.keys()))"
+    program = f"import sys; from rockflex.studies import KINDS; print(len(KINDS), *({heavy!r} & sys.modules.keys()))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["6"]
 

@@ -7,9 +7,9 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._shown import shown
-from rockflex.study import _simulate
-from rockflex.study._prepared_case import PreparedCase
+from rockflex.foundation.shown import shown
+from rockflex.studies import _simulate
+from rockflex.studies._prepared_case import PreparedCase
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)

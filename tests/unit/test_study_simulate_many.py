@@ -10,9 +10,10 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values, make_frame
-from rockflex.response import PEAKS
-from rockflex.solve import engine
-from rockflex.solve._failures import Status
+from rockflex.engine.solution import Status
+from rockflex.engine.solvers import SolverPool
+from rockflex.models import _prepared_model
+from rockflex.response._response import PEAKS
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration
 
@@ -123,13 +124,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), engine.EngineStack.taken
+    seen, real = set(), SolverPool.acquire
 
-    def taken(stack, dt):
+    def acquire(pool, dt):
         seen.add(threading.current_thread())
-        return real(stack, dt)
+        return real(pool, dt)
 
-    monkeypatch.setattr(engine.EngineStack, "taken", taken)
+    monkeypatch.setattr(SolverPool, "acquire", acquire)
     rf.simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     rf.simulate_many(STRUCTURES, MOTIONS, workers=3)
@@ -203,7 +204,7 @@ def test_a_hysteresis_is_that_of_the_models_that_end_in_bw_or_else_of_all() -> N
 @pytest.mark.parametrize("output", ["peaks", "history"])
 def test_runs_that_fail_become_rows(monkeypatch, workers, output):
     """Models with more modes than a structure has; runs that the solver gives up."""
-    real = engine._ends_of
+    real = _prepared_model._ends_of
 
     def ends_of(batch, states, dt, *others, **options):
         found = real(batch, states, dt, *others, **options)
@@ -211,7 +212,7 @@ def test_runs_that_fail_become_rows(monkeypatch, workers, output):
             found.status[:], found.samples[:] = Status.CHATTER, 0
         return found
 
-    monkeypatch.setattr(engine, "_ends_of", ends_of)
+    monkeypatch.setattr(_prepared_model, "_ends_of", ends_of)
     table = rf.simulate_many(STRUCTURES, MOTIONS, ["2DOF-S", "4DOF-S"], output, workers=workers)
     for name in ("n_uplifts", "n_impacts"):
         assert table[name].dtype == "Int64"

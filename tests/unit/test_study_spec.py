@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.kinds import load_study
 from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy
-from rockflex.study import run_plan
-from rockflex.study.cloud import CloudStudy
-from rockflex.study.incremental import IncrementalStudy
-from rockflex.study.stripes import StripeStudy
+from rockflex.studies import load_study
+from rockflex.studies._run_plan import run_plan
+from rockflex.studies.cloud import CloudStudy
+from rockflex.studies.incremental import IncrementalStudy
+from rockflex.studies.stripes import StripeStudy
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STRUCTURE = """

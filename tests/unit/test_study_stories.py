@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.fragility import demand_limit_state
+from rockflex.fragility._limit_states import demand_limit_state
 
 FRAME = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": math.inf}
 FRAME |= {"period": 0.6, "aspect_ratio": 6.0, "damping_ratio": 0.03}
@@ -64,7 +64,7 @@ def test_limits_of_a_study_are_reported_and_checked_before_any_run():
     limits = ["max_ductility > 4", "max_residual_drift_ratio > 0.002", 0.01]
     study = rf.CloudStudy(structures=[ENTRY], records=RECORDS, scales=[0.5, 1.0, 2.0], limits=limits)
     runs = rf.run_study(study)
-    from rockflex.kinds import KINDS, StudyFindings
+    from rockflex.studies import KINDS, StudyFindings
 
     found = StudyFindings()
     KINDS["cloud"].report(study, runs, found)

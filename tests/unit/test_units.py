@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from report_case import FRAME, HELD, PULSE, SPRINGS, runs
-from rockflex._units import QUANTITIES, UnitSystem, named_unit, with_decimal_commas
-from rockflex.cli import app
-from rockflex.response import DEMANDS
+from rockflex.cli._app import app
+from rockflex.foundation.units import QUANTITIES, UnitSystem, named_unit, with_decimal_commas
+from rockflex.response._demands import DEMANDS
 
 # Exponents of force, length and time.
 DIMENSIONS = {

@@ -1,4 +1,4 @@
-"""Every public value is equal to one made of the same, and to its copies; see `rockflex._values`."""
+"""Every public value is equal to one made of the same, and to its copies; see `rockflex.foundation.values`."""
 
 import copy
 import dataclasses
@@ -13,10 +13,11 @@ from pydantic import BaseModel
 
 import rockflex as rf
 from builders import frame_values, make_frame
-from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes
-from rockflex.models import ForgottenLaw, RockingModel
+from rockflex.foundation.values import Value
+from rockflex.models._impact import ForgottenLaw
+from rockflex.models._rocking_model import RockingModel
 from rockflex.motion import GroundMotion
+from rockflex.structure._participation import MassNormalisedModes
 
 RECORD = 2.5 * np.sin(np.arange(300) * 0.1)
 ROTATION = np.where(np.arange(40) % 5, np.linspace(2e-4, 0.05, 40), 0.0)

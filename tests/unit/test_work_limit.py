@@ -10,9 +10,9 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError, SolverError
 from rockflex.models import parse_model
-from rockflex.solve import CostModel, Task, WorkLimitError, cost_model_of
-from rockflex.study import PreparedCase
-from rockflex.study._arguments import WORK_LIMIT, checked_work_limit
+from rockflex.models._work import CostModel, Task, WorkLimitError, cost_model_of
+from rockflex.studies import PreparedCase
+from rockflex.studies._arguments import WORK_LIMIT, checked_work_limit
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'

@@ -8,7 +8,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.study._prepared_case import PreparedCase
+from rockflex.studies._prepared_case import PreparedCase
 from twins.grounded_complete import Bar, Dashpot, Phase, Twin
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)

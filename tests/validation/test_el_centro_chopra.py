@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 from rockflex.motion import load_suite
 
 INCH = 0.0254

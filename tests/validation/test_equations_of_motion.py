@@ -10,7 +10,9 @@ import sympy as sp
 
 from builders import vector_field
 from rockflex import RockingProperties
-from rockflex.models import RockingModel, accelerations_at_states, reactions
+from rockflex.models._reactions import reactions
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._values_at_states import accelerations_at_states
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rockflex._constants import GRAVITY
+from rockflex.foundation.constants import GRAVITY
 from rockflex.motion import load_suite
 
 STANDARD = 9.80665  # gravity in the published values, m/s²

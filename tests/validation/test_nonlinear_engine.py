@@ -13,11 +13,14 @@ import rockflex as rf
 from builders import finer, make_frame
 from random_runs import nonlinear_run
 from rockflex.engine import Run
-from rockflex.models import Quantities, element_force_sums, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
 from rockflex.models import _ground_fields as compiled_ground
 from rockflex.models import _nonlinear_ground_system as ground_systems
 from rockflex.models import _nonlinear_system as systems
+from rockflex.models import parse_model
+from rockflex.models._elements import element_force_sums
+from rockflex.models._nonlinear_ground_system import nonlinear_system
+from rockflex.models._quantities import Quantities
 from rockflex.models._vector_fields import field_numbers
 
 

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex._constants import GRAVITY
-from rockflex.models import GROUND, HEADER, TIME, MotionBetween, accelerations_at_states, printed_reactions
+from rockflex.foundation.constants import GRAVITY
+from rockflex.models._motion_between_states import MotionBetween
+from rockflex.models._reactions import printed_reactions
+from rockflex.models._state_layout import GROUND, HEADER, TIME
+from rockflex.models._values_at_states import accelerations_at_states
 from rockflex.papers.silva_stojadinovic_2024 import _inputs
 
 RECORDS = [*rf.load_suite("fema-p695-far-field"), *rf.load_suite("fema-p695-near-field-no-pulse")][::3]

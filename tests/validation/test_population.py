@@ -8,7 +8,7 @@ on a handful of outliers: over draws of 400 pairs it ranges from about 0.7 to 0.
 import pytest
 
 from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy, population_statistics
-from rockflex.study import run_plan
+from rockflex.studies._run_plan import run_plan
 
 
 @pytest.fixture(scope="module")

@@ -13,14 +13,9 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.papers.silva_stojadinovic_2024 import (
-    TARGETS,
-    PaperRecords,
-    Verdict,
-    _section_4,
-    reproduce_targets,
-)
-from rockflex.papers.silva_stojadinovic_2024._comparison import ResampledInterval
+from rockflex.papers.silva_stojadinovic_2024 import _section_4
+from rockflex.papers.silva_stojadinovic_2024._comparison import ResampledInterval, Verdict
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
 from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
 from rockflex.papers.silva_stojadinovic_2024._section_3_2 import (
     cases_of_differences,
@@ -33,6 +28,7 @@ from rockflex.papers.silva_stojadinovic_2024._section_3_3 import (
     population_intervals,
     population_pool,
 )
+from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce_targets
 
 pytestmark = pytest.mark.slow
 

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
-from rockflex.study.folders import StudyFolder
+from rockflex.studies.folders import StudyFolder
 from toy_study import ToyPlan, run_study
 
 pytestmark = pytest.mark.slow

@@ -12,8 +12,10 @@ from scipy.optimize import brentq
 
 import rockflex as rf
 from builders import make_frame, vector_field
-from rockflex.models import Quantities, RockingModel, parse_model
-from rockflex.solve import Engine
+from rockflex.models import parse_model
+from rockflex.models._prepared_model import PreparedModel
+from rockflex.models._quantities import Quantities
+from rockflex.models._rocking_model import RockingModel
 
 FRAME = make_frame()  # fmt: skip
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
@@ -168,9 +170,11 @@ def rates_of(properties: rf.RockingProperties, side: int, motion: np.ndarray) ->
 def test_series_and_steps_agree_where_the_weight_is_balanced_or_nearly_so(stiffness):
     model = parse_model("MDOF-S").of(tied(stiffness, 1e5).rocking())
     assert not model.integrated
-    exact = Engine(model, Quantities.none(model.properties.n_modes)).run(EL_CENTRO.acceleration, EL_CENTRO.dt)
+    exact = PreparedModel(model, Quantities.none(model.properties.n_modes)).run(EL_CENTRO.acceleration, EL_CENTRO.dt)
     other = RockingModel(model.label, model.properties, stepwise=True, law=model.law)
-    integrated = Engine(other, Quantities.none(other.properties.n_modes)).run(EL_CENTRO.acceleration, EL_CENTRO.dt)
+    integrated = PreparedModel(other, Quantities.none(other.properties.n_modes)).run(
+        EL_CENTRO.acceleration, EL_CENTRO.dt
+    )
     assert exact.n_impacts == integrated.n_impacts > 5
     assert exact.peaks[0] == pytest.approx(integrated.peaks[0], rel=2e-9)
 

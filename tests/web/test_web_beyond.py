@@ -11,7 +11,7 @@ import pytest
 import uvicorn
 
 from rockflex.cli import _app as cli
-from rockflex.motion import record_csv
+from rockflex.motion._columns import record_csv
 from rockflex.web import make_app
 from rockflex.web._uploads import read_uploaded_record
 

@@ -10,9 +10,10 @@ import pytest
 import uvicorn
 
 from rockflex import InputError
-from rockflex.web import make_app, serve
+from rockflex.web import make_app
 from rockflex.web._connections import FREE_BYTES, BoundedBodies, patient_protocol
 from rockflex.web._refusal import Refusal
+from rockflex.web._serve import serve
 
 HANG = 60.0  # s: a guard against what never ends
 

@@ -8,9 +8,9 @@ from test_web_structure import PIER
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._json import as_json_value
-from rockflex.structure.file import ELEMENTS
-from rockflex.study._ground_tables import GroundTable
+from rockflex.foundation.json import as_json_value
+from rockflex.structure.file._structure_entry import ELEMENTS
+from rockflex.studies._ground_tables import GroundTable
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

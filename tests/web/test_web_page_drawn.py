@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex._json import as_json_value
+from rockflex.foundation.json import as_json_value
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.structure.file import StructureEntry
+from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.web import _downloads
 from rockflex.web._forms import PRESETS
 from rockflex.web._structure import build_page_structure

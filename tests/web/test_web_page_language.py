@@ -7,7 +7,7 @@ import pytest
 
 from page_texts import texts_of_answers, texts_of_scripts
 from record_samples import at2
-from rockflex import _language
+from rockflex.foundation import language
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
@@ -51,7 +51,7 @@ class Marks(dict[str, str]):
 @pytest.fixture
 def marked(visit, monkeypatch):
     """A visitor whose language has every text in quotation marks, on the page and in what the server words."""
-    monkeypatch.setattr(_language, "catalogue", lambda name: Marks() if name == "de" else {})
+    monkeypatch.setattr(language, "catalogue", lambda name: Marks() if name == "de" else {})
     visitor = visit(None, locale="de-DE")
     catalogue = {text: f"«{text}»" for text in texts_of_scripts() | texts_of_answers()}
     visitor.page.route("**/languages/de.json", lambda route: route.fulfill(json=catalogue))

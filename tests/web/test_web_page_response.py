@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._json import as_json_value
+from rockflex.foundation.json import as_json_value
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

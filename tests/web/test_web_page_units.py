@@ -3,8 +3,8 @@
 import pytest
 from scipy import constants
 
-from rockflex._json import as_json_value
-from rockflex._units import QUANTITIES
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.units import QUANTITIES
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

@@ -8,7 +8,7 @@ from threading import Event, Thread
 
 import pytest
 
-from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.engine.stops import RunStoppedError, stopping_when
 from rockflex.web._readers import Readers
 from rockflex.web._refusal import Refusal
 from rockflex.web._uploads import read_uploaded_matrices, read_uploaded_record

@@ -8,7 +8,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._json import as_json_value
+from rockflex.foundation.json import as_json_value
 from rockflex.web import _record_sets
 from rockflex.web._forms import PRESETS
 from rockflex.web._jobs import BackgroundFileJob

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import rockflex as rf
-import rockflex.plot
+import rockflex.plot._run_sheet
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 
 pytestmark = pytest.mark.web
@@ -86,7 +86,7 @@ def blank(monkeypatch):
         return Figure((width / 25.4, height / 25.4), layout="constrained")
 
     for name in ("draw_run_sheet", "draw_record_strip"):
-        monkeypatch.setattr(rockflex.plot, name, figure)
+        monkeypatch.setattr(rockflex.plot._run_sheet, name, figure)
 
 
 @pytest.mark.slow

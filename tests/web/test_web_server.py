@@ -23,11 +23,12 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex._errors import InputError
-from rockflex._json import as_json_value
-from rockflex.study.spec import GroundTable
-from rockflex.web import _app, make_app, serve
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import as_json_value
+from rockflex.studies.spec import GroundTable
+from rockflex.web import _app, make_app
 from rockflex.web._forms import PRESETS
+from rockflex.web._serve import serve
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 

@@ -14,11 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
-from rockflex._json import as_json_value
-from rockflex._schema import SchemaKey
-from rockflex._units import QUANTITIES
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.schema import SchemaKey
+from rockflex.foundation.units import QUANTITIES
 from rockflex.motion import MEASURES
-from rockflex.structure.file import ELEMENTS, KINDS, TomlTable
+from rockflex.structure.file._structure_entry import ELEMENTS, KINDS
+from rockflex.structure.file._toml_table import TomlTable
 from rockflex.web._encoding import envelope_indices
 from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
 from rockflex.web._refusal import Refusal

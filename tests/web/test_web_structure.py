@@ -11,8 +11,9 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.models import RockingModel, _label
-from rockflex.structure.file import StructureEntry
+from rockflex.models import _label
+from rockflex.models._rocking_model import RockingModel
+from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.web import _downloads
 from rockflex.web._downloads import file_maker
 from rockflex.web._forms import PRESETS, forms_of_structures

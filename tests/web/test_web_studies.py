@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study.design import TendonLevel, smallest_width
+from rockflex.studies.design import TendonLevel, smallest_width
 from rockflex.web._forms import PRESETS
 from rockflex.web._jobs import MAX_STUDIES, BackgroundJobs, StudyJob
 from rockflex.web._refusal import Refusal

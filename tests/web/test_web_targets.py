@@ -9,7 +9,7 @@ import pytest
 from test_web_uploads import GIVEN, body_of, give
 
 import rockflex as rf
-from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.engine.stops import RunStoppedError, stopping_when
 from rockflex.web._selection import selection_view
 from rockflex.web._state import parse_page_state
 from rockflex.web._uploads import UploadedRecords

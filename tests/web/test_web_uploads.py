@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from record_samples import cosmos, esm, knet
-from rockflex.structure.file import StructureEntry
+from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.web import _app
 from rockflex.web._downloads import file_maker
 from rockflex.web._earthquake import record_view

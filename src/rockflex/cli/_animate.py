@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from rockflex._errors import InputError
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.study.progress import progress_bar
+from rockflex.foundation.errors import InputError
+from rockflex.studies.progress import progress_bar
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -88,8 +88,8 @@ def animate(
     from rockflex.cli._options import naming_flags_in_errors
     from rockflex.cli._run_results import print_failed_runs, print_run_warnings
     from rockflex.plot._figures import literal_text
-    from rockflex.plot.animation import animate as draw
-    from rockflex.plot.animation import animation_path_and_suffix
+    from rockflex.plot.animation._animate import animate as draw
+    from rockflex.plot.animation._files import animation_path_and_suffix
 
     with naming_flags_in_errors(FLAGS):
         target, _ = animation_path_and_suffix(out)

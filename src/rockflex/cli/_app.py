@@ -11,11 +11,11 @@ import typer
 from typer.core import TyperGroup
 
 from rockflex import __version__
-from rockflex._errors import InputError, SolverError, system_error_text
 from rockflex.cli import _animate, _check, _compare, _modes, _motion, _project, _reproduce, _run, _select, _study
 from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
-from rockflex.kinds import KINDS
+from rockflex.foundation.errors import InputError, SolverError, system_error_text
+from rockflex.studies._study_kind import KINDS
 
 SERVE_EPILOG = """[bold]Examples[/bold]
 
@@ -44,8 +44,8 @@ def serve(
     """Serve the web page: structure, earthquake, response, fragility and design."""
     from secrets import token_urlsafe
 
-    from rockflex.web import serve as start
     from rockflex.web._hosts import is_loopback_host
+    from rockflex.web._serve import serve as start
 
     token = ""
     if not is_loopback_host(host):

@@ -11,8 +11,6 @@ from typing import Any
 
 import typer
 
-from rockflex._errors import InputError, SolverError
-from rockflex._schema import BoucWenSchema, FrameFlags, InitialStateSchema
 from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
 from rockflex.cli._options import flag_values, naming_flags_in_errors
@@ -24,19 +22,18 @@ from rockflex.cli._run_options import (
     parse_work_limit,
 )
 from rockflex.cli._structures import LoadedStructure, load_structure, split_structure_file_argument
-from rockflex.modal import RockingProperties
-from rockflex.models import parse_model
-from rockflex.motion import GroundMotion, OnError
-from rockflex.response import BY_STORY, PEAKS, Response, friction_coefficient, story_results
-from rockflex.study import (
-    PreparedCase,
-    RunOptions,
-    checked_scale_factors,
-    free_vibration_time,
-    parse_scale_range,
-    yielding_model_labels,
-)
-from rockflex.study.parallel import map_runs_in_order
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.schema import BoucWenSchema, FrameFlags, InitialStateSchema
+from rockflex.models._label import parse_model
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._read_suite import OnError
+from rockflex.response._friction import friction_coefficient
+from rockflex.response._respond import BY_STORY, story_results
+from rockflex.response._response import PEAKS, Response
+from rockflex.structure._rocking import RockingProperties
+from rockflex.studies._arguments import checked_scale_factors, free_vibration_time, parse_scale_range
+from rockflex.studies._prepared_case import PreparedCase, RunOptions, yielding_model_labels
+from rockflex.studies.parallel import map_runs_in_order
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
 

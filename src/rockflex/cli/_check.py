@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.units import UnitSystem
 
 if TYPE_CHECKING:
-    from rockflex.response import Check, CheckLimits, CheckTable, RecordSet
+    from rockflex.response._limit_checks import Check, CheckLimits, CheckTable
+    from rockflex.response._record_set import RecordSet
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -81,9 +82,9 @@ def check(
     from rockflex.cli._options import naming_flags_in_errors
     from rockflex.cli._run_results import checked_path_of_report
     from rockflex.cli._select import parse_comma_separated_numbers
-    from rockflex.report import write_report
-    from rockflex.response import check as check_limits
-    from rockflex.study import simulate_set
+    from rockflex.report.run._report_page import write_report
+    from rockflex.response._limit_checks import check as check_limits
+    from rockflex.studies._simulate import simulate_set
 
     page = None if report is None else checked_path_of_report(report, force=force)
     written = options.report_format(page, output_units, language, comma=decimal_comma)
@@ -150,8 +151,8 @@ def read_limits(file: Path | None) -> "CheckLimits":
     """
     from dataclasses import fields
 
-    from rockflex.response import CheckLimits
-    from rockflex.structure.file import read_toml_file
+    from rockflex.response._limit_checks import CheckLimits
+    from rockflex.structure.file._structure_entry import read_toml_file
 
     content: Mapping[str, Any] = {} if file is None else read_toml_file(file, "limits")
     known = [each.name for each in fields(CheckLimits)]
@@ -165,7 +166,7 @@ def read_limits(file: Path | None) -> "CheckLimits":
 
 
 def _print_set(found: "RecordSet", units: UnitSystem) -> None:
-    from rockflex.response import DEMANDS, DEMANDS_BY_RECORD
+    from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
 
     peaks, statistics = found.peaks, found.statistics
     shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
@@ -192,7 +193,7 @@ def _print_set(found: "RecordSet", units: UnitSystem) -> None:
 
 
 def _print_checks(table: "CheckTable", units: UnitSystem) -> None:
-    from rockflex.response import NO_LIMIT
+    from rockflex.response._limit_checks import NO_LIMIT
 
     console.print_line()
     heads = ("check", "", "demand", "limit", "unit", "ratio", "source of the limit")
@@ -206,7 +207,7 @@ def _print_checks(table: "CheckTable", units: UnitSystem) -> None:
 
 
 def _check_cells(row: "Check", units: UnitSystem) -> list[str]:
-    from rockflex.response import check_in_units
+    from rockflex.response._limit_checks import check_in_units
 
     demand, limit, unit = check_in_units(row, units)
     verdict = console.StyledCell(*VERDICTS[row.ok])

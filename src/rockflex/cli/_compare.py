@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._schema import GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
+from rockflex.foundation.units import UnitSystem
 
 if TYPE_CHECKING:
     from rockflex.cli._structures import LoadedStructure
@@ -73,9 +73,10 @@ def compare(
     from rockflex.cli._options import naming_flags_in_errors
     from rockflex.cli._run_options import number_or_word, parse_work_limit
     from rockflex.cli._run_results import checked_path_of_report
-    from rockflex.report import write_report
-    from rockflex.response import DEMANDS, STATISTICS
-    from rockflex.study import compare as run
+    from rockflex.report.run._report_page import write_report
+    from rockflex.response._comparison import STATISTICS
+    from rockflex.response._demands import DEMANDS
+    from rockflex.studies._compare import compare as run
 
     if "," in model:
         raise InputError(f"compare takes one model, but --model names {model}. Choose one of them.")

@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, Self
 
-from rockflex._errors import RecordWarning
-from rockflex._units import with_decimal_commas
-from rockflex.study.progress import progress_bar, progress_counter
+from rockflex.foundation.errors import RecordWarning
+from rockflex.foundation.units import with_decimal_commas
+from rockflex.studies.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console

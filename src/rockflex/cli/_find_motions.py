@@ -8,20 +8,14 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.motion import (
-    GroundMotion,
-    OnError,
-    Vertical,
-    load_suite,
-    quiet_motion,
-    read_components_by_file,
-    read_motion,
-    record_files_in_folder,
-    suite_names,
-)
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._pulses import quiet_motion
+from rockflex.motion._read_suite import OnError, Vertical, read_components_by_file, record_files_in_folder
+from rockflex.motion._readers import read_motion
+from rockflex.motion._suite import load_suite, suite_names
 
 MIN_QUIET_TIME = 0.01  # s of quiet ground before a free vibration until at rest
 

@@ -5,18 +5,18 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from rockflex._errors import InputError
 from rockflex.cli import _console as console
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import pandas as pd
 
-    from rockflex.papers.silva_stojadinovic_2024 import PaperRecords, Piece
-    from rockflex.report import FinishedResult
-    from rockflex.study.folders import StudyFolder
+    from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords, Piece
+    from rockflex.report._document import FinishedResult
+    from rockflex.studies.folders._folder import StudyFolder
 
 KEPT = "kept"  # the folder in the output folder
 RESULTS = "results"  # the study of the targets; every group of pieces has another one
@@ -48,8 +48,8 @@ class KeptWork:
 
     def results(self) -> "dict[str, FinishedResult]":
         """Return the finished targets, in the order of the paper."""
-        from rockflex.papers.silva_stojadinovic_2024 import TARGETS
-        from rockflex.report import FinishedResult
+        from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS
+        from rockflex.report._document import FinishedResult
 
         if self._home is None:
             return {}
@@ -64,7 +64,7 @@ class KeptWork:
         """Keep a finished target."""
         import pyarrow as pa
 
-        from rockflex.papers.silva_stojadinovic_2024 import TARGETS
+        from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS
 
         if self._home is not None:
             row = {"target": [result.name], "result": [result.to_json()]}
@@ -88,12 +88,12 @@ class KeptWork:
             self._group(piece.group, piece.count).write(piece.number, pa.Table.from_pandas(table))
 
     def _results(self) -> "StudyFolder":
-        from rockflex.papers.silva_stojadinovic_2024 import TARGETS
+        from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS
 
         return self._group(RESULTS, len(TARGETS))
 
     def _group(self, name: str, count: int) -> "StudyFolder":
-        from rockflex.study.folders import StudyFolder
+        from rockflex.studies.folders._folder import StudyFolder
 
         assert self._home is not None
         if name not in self._folders:
@@ -118,13 +118,14 @@ class KeptWork:
 
     @property
     def _checksums(self) -> dict[str, str]:
-        from rockflex.study import record_checksums
+        from rockflex.studies._run_matrix import record_checksums
 
         return record_checksums(self._records.suite)
 
     def _check_same_work(self, folder: Path) -> None:
         """Raise an InputError that lists what differs from the reproduction in a folder, if there is one."""
-        from rockflex.study.folders import MANIFEST, StudyFolder, listed_differences, specification_differences
+        from rockflex.studies.folders._folder import StudyFolder
+        from rockflex.studies.folders._manifest import MANIFEST, listed_differences, specification_differences
 
         if not (folder / MANIFEST).exists():
             return
@@ -141,8 +142,8 @@ class KeptWork:
 
 def _versions() -> dict[str, str]:
     """Return what the numbers depend on; in a working copy of the sources also their commit."""
-    from rockflex._versions import CHANGES, git_commit
-    from rockflex.engine import VECTOR_LEVEL
+    from rockflex.engine.loops import LEVEL as VECTOR_LEVEL
+    from rockflex.foundation.versions import CHANGES, git_commit
 
     commit = (git_commit(Path(__file__), known=True) or "").removesuffix(CHANGES)
     return output.versions() | {"vector instructions": VECTOR_LEVEL} | ({"source": commit} if commit else {})
@@ -156,7 +157,7 @@ def prepare_folder(out: Path, *, force: bool) -> None:
     InputError
         If it holds other things, or another process writes into it.
     """
-    from rockflex.study.folders import LOCK, lock_holder
+    from rockflex.studies.folders._lock import LOCK, lock_holder
 
     kept = out / KEPT
     ours = (kept / RESULTS).is_dir()

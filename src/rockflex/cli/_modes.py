@@ -5,20 +5,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._schema import FrameFlags
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
 from rockflex.cli._options import flag_values
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import FrameFlags
+from rockflex.foundation.units import UnitSystem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from rockflex.cli._structures import LoadedStructure
-    from rockflex.modal import Adequacy, Pivot, RockingProperties
+    from rockflex.structure._adequacy import Adequacy
+    from rockflex.structure._pivot import Pivot
+    from rockflex.structure._rocking import RockingProperties
 
 
 EPILOG = """[bold]Examples[/bold]
@@ -83,14 +85,14 @@ def modes(
     force: options.Force = False,
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
-    from rockflex._checks import checked_whole_number
     from rockflex.cli._structures import (
         ELEMENT_UNITS,
         describe_rocking_properties,
         load_structure,
         split_structure_file_argument,
     )
-    from rockflex.modal import adequacy as adequacy_of
+    from rockflex.foundation.checks import checked_whole_number
+    from rockflex.structure._adequacy import adequacy as adequacy_of
 
     output.check_output_folder(out, force=force)
     path, rest = split_structure_file_argument(structure, [] if file is None else [file])
@@ -143,7 +145,7 @@ def _fixed_base_mode_rows(loaded: "LoadedStructure", properties: "RockingPropert
 
 def _uplifted_mode_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     """One row per vibration about a pivot, or about both where they differ, with the same modes, in SI units."""
-    from rockflex.modal import uplifted_modes
+    from rockflex.structure._uplifted import uplifted_modes
 
     rows: list[dict[str, Any]] = []
     for pivot in properties.pivots:
@@ -200,7 +202,7 @@ def _write_modes(
 ) -> None:
     import pandas as pd
 
-    from rockflex.modal import RockingProperties
+    from rockflex.structure._rocking import RockingProperties
 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
@@ -209,7 +211,8 @@ def _write_modes(
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
         if drawn:
-            from rockflex.plot import plot_mode_shapes, save_figure
+            from rockflex.plot._figures import save_figure
+            from rockflex.plot._structure import plot_mode_shapes
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
     console.print_remark(

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import few_texts_shown, first_texts_shown, number_with_noun
 
 if TYPE_CHECKING:
     from rockflex.cli._find_motions import FoundMotion
-    from rockflex.motion import Finding, RecordInfo, RecordSurvey, SurveyEntry
+    from rockflex.motion._findings import Finding
+    from rockflex.motion._record_info import RecordInfo
+    from rockflex.motion._survey import RecordSurvey, SurveyEntry
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -90,7 +92,7 @@ def motion(
 
 
 def _units_of_measures() -> dict[str, str]:
-    from rockflex.motion import record_measures, vertical_measures
+    from rockflex.motion._measures import record_measures, vertical_measures
 
     return {
         "dt": "s",
@@ -109,7 +111,7 @@ def _units_of_measures() -> dict[str, str]:
 
 
 def _measures_of_motion(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
-    from rockflex.motion import MeasureInput, record_measures, vertical_measures
+    from rockflex.motion._measures import MeasureInput, record_measures, vertical_measures
 
     motion, shaking = item.motion, MeasureInput(item.motion)
     spectral = {"sa": motion.spectrum(periods, damping).sa}
@@ -134,8 +136,8 @@ def _print_embedded_suites(suites: Sequence[dict[str, Any]]) -> None:
 
 
 def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
-    from rockflex._constants import GRAVITY
-    from rockflex.motion import record_measures
+    from rockflex.foundation.constants import GRAVITY
+    from rockflex.motion._measures import record_measures
 
     chosen = [(measure, measure.unit == "m/s²") for measure in record_measures()]
     records: list[list[str]] = []
@@ -179,7 +181,7 @@ def _print_findings(found: Sequence["FoundMotion"]) -> None:
 
 
 def _print_vertical_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> None:
-    from rockflex._constants import GRAVITY
+    from rockflex.foundation.constants import GRAVITY
 
     cells: list[list[str]] = []
     for row in rows:
@@ -212,7 +214,8 @@ def _write_motion_measures(
         table = pd.DataFrame(rows).drop(columns="metadata")
         output.write_table(table, stage / "motions.csv")
         if few:
-            from rockflex.plot import plot_motion, save_figure
+            from rockflex.plot._figures import save_figure
+            from rockflex.plot._motion import plot_motion
 
             for stem, item in zip(
                 output.output_file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True
@@ -260,7 +263,7 @@ def survey(
     ] = None,
 ) -> None:
     """Say of each record file what it holds, whether it is taken, and why not."""
-    from rockflex.motion import survey_records
+    from rockflex.motion._survey import survey_records
 
     folders = [path for path in paths if path.is_dir()]
     if folders and len(paths) > 1:
@@ -291,7 +294,7 @@ def survey(
 
 
 def _print_record_survey(found: "RecordSurvey") -> None:
-    from rockflex._constants import GRAVITY
+    from rockflex.foundation.constants import GRAVITY
 
     def cells(entry: "SurveyEntry") -> list[str]:
         unit = next((each.value for each in entry.findings if each.what == "unit"), None)

@@ -10,9 +10,10 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 import typer
 from typer.core import TyperCommand
 
-from rockflex._errors import InputError
-from rockflex._language import Language
-from rockflex._schema import (
+from rockflex.cli._console import choose_decimal_comma
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import Language
+from rockflex.foundation.schema import (
     BoucWenSchema,
     FrameFlags,
     GroundSchema,
@@ -24,8 +25,7 @@ from rockflex._schema import (
     command_line_flag,
     schema_keys,
 )
-from rockflex._units import SystemName
-from rockflex.cli._console import choose_decimal_comma
+from rockflex.foundation.units import SystemName
 
 FRAME = "Structure by flags (all eight), in place of a file"
 GROUND = "Ground: springs under the base, and friction"

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockflex import __version__
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file
-from rockflex._shown import few_texts_shown, number_with_noun
-from rockflex._versions import package_versions
 from rockflex.cli import _console as console
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file
+from rockflex.foundation.shown import few_texts_shown, number_with_noun
+from rockflex.foundation.versions import package_versions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +27,7 @@ YOUNG = 60.0  # s in which a temporary folder may not have its lock yet
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
-    from rockflex._json import as_json_value
+    from rockflex.foundation.json import as_json_value
 
     return json.dumps(as_json_value(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
@@ -83,7 +83,7 @@ def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool)
 @contextmanager
 def _held(temporary: Path) -> Generator[None]:
     """Show other processes that this one is at work in its temporary folder."""
-    from rockflex.study.folders import LOCK, locked_folder
+    from rockflex.studies.folders._lock import LOCK, locked_folder
 
     lock = locked_folder(temporary / LOCK)
     try:
@@ -96,7 +96,7 @@ def _is_dead_stage(path: Path) -> bool:
     """Whether a file is the temporary folder of a command that was killed."""
     if not path.name.startswith(STAGE) or path.is_symlink() or not path.is_dir():
         return False
-    from rockflex.study.folders import LOCK, lock_holder
+    from rockflex.studies.folders._lock import LOCK, lock_holder
 
     if (path / LOCK).exists():
         return lock_holder(path / LOCK) is None
@@ -118,7 +118,7 @@ def output_file_stems(names: Iterable[str]) -> list[str]:
 
 def write_table(table: "pd.DataFrame", path: Path) -> None:
     """Write a table as CSV."""
-    from rockflex._csv import table_as_csv
+    from rockflex.foundation.csv import table_as_csv
 
     path.write_text(table_as_csv(table), "utf-8", newline="\n")
 

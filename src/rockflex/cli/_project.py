@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._schema import ReportKeys
-from rockflex._units import KN
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
 from rockflex.cli._compare import CompareCommand
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import ReportKeys
+from rockflex.foundation.units import KN
 
 if TYPE_CHECKING:
-    from rockflex.project import Project
+    from rockflex.report.project._project import Project
 
 NEW_EPILOG = """[bold]Examples[/bold]
 
@@ -92,7 +92,7 @@ def new(
     from rockflex.cli._options import flag_values, naming_flags_in_errors
     from rockflex.cli._run_options import number_or_word
     from rockflex.cli._select import parse_comma_separated_numbers
-    from rockflex.project import SUFFIX, Project
+    from rockflex.report.project._project import SUFFIX, Project
 
     target = file if file.suffix == SUFFIX else file.with_name(file.name + SUFFIX)
     if target.exists() and not force:
@@ -129,7 +129,7 @@ def run(
     json: options.Json = False,
 ) -> None:
     """Run all structures under all records, print values for design and checks, and keep the results in the file."""
-    from rockflex.project import read_project
+    from rockflex.report.project._project import read_project
 
     project = read_project(file).run(workers)
     project.save(file)
@@ -154,7 +154,7 @@ def report(
 ) -> None:
     """Write the report of all structures side by side, or of one with its values for design and checks."""
     from rockflex.cli._run_results import checked_path_of_report
-    from rockflex.project import read_project
+    from rockflex.report.project._project import read_project
 
     page = checked_path_of_report(out, force=force, flag="The report")
     written = options.report_format(page, output_units, language, comma=decimal_comma)
@@ -165,14 +165,14 @@ def report(
 @app.command("show", epilog=SHOW_EPILOG, no_args_is_help=True)
 def show(file: File, json: options.Json = False) -> None:
     """Show what a project holds, and its results."""
-    from rockflex.project import read_project
+    from rockflex.report.project._project import read_project
 
     _print_project(read_project(file), json=json)
 
 
 def _print_project(project: "Project", *, json: bool) -> None:
     """Print the contents of a project, and its results."""
-    from rockflex.response import DEMANDS
+    from rockflex.response._demands import DEMANDS
 
     results = project.results
     if json:

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rockflex._shown import number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
-from rockflex.study.progress import duration_text, progress_bar
+from rockflex.foundation.shown import number_with_noun
+from rockflex.studies.progress import duration_text, progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
     from rockflex.cli._reproduction import Done, Job
-    from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
-    from rockflex.report import FinishedResult
-    from rockflex.study.progress import Show
+    from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+    from rockflex.report._document import FinishedResult
+    from rockflex.studies.progress import Show
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -83,16 +83,17 @@ def reproduce(
     force: Annotated[bool, typer.Option("--force", help="Start anew, and replace earlier results in --out.")] = False,
 ) -> None:
     """Recompute the tables and figures of the paper, and report which printed numbers reproduce."""
-    from rockflex.papers import silva_stojadinovic_2024 as paper
+    from rockflex.papers.silva_stojadinovic_2024._inputs import SEED, SEEDS, PaperRecords
+    from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, target_title
 
     if names:
-        for target in paper.TARGETS:
-            typer.echo(f"{target:10}  {paper.target_title(target)}")
+        for target in TARGETS:
+            typer.echo(f"{target:10}  {target_title(target)}")
         return
 
     for target in targets or ():
-        paper.target_title(target)
-    given = paper.PaperRecords(records, paper.SEEDS if seeds is None else seeds, paper.SEED if seed is None else seed)
+        target_title(target)
+    given = PaperRecords(records, SEEDS if seeds is None else seeds, SEED if seed is None else seed)
     console.print_remark(given.description)
     if out is None:
         output.check_output_folder(out, force=force)
@@ -100,14 +101,14 @@ def reproduce(
         from rockflex.cli._kept_work import prepare_folder
 
         prepare_folder(out, force=force)
-    _reproduce_targets(set(targets or paper.TARGETS), given, out)
+    _reproduce_targets(set(targets or TARGETS), given, out)
 
 
 def _reproduce_targets(wanted: set[str], records: "PaperRecords", out: Path | None) -> None:
     """Compute what is missing of some targets, and write or print each when it is done."""
     from rockflex.cli._kept_work import KeptWork
     from rockflex.cli._reproduction import finished_jobs, planned_jobs
-    from rockflex.papers.silva_stojadinovic_2024 import TARGETS, target_pieces
+    from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, target_pieces
 
     with KeptWork(out, records) as kept:
         results = kept.results()
@@ -195,10 +196,12 @@ def _write_reproduction(
     only: str | None = None,
 ) -> None:
     """Write the report on what there is; with `only`, the figures of the other targets are there already."""
-    from rockflex._files import write_file_atomically
-    from rockflex.papers.silva_stojadinovic_2024 import TARGETS, RemarkKind, Verdict
-    from rockflex.report import PublicationReport, write_publication_report
-    from rockflex.study.folders import explaining_write_errors
+    from rockflex.foundation.files import write_file_atomically
+    from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
+    from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS
+    from rockflex.report._document import PublicationReport
+    from rockflex.report._publication_files import write_publication_report
+    from rockflex.studies.folders._folder import explaining_write_errors
 
     results = [found[name] for name in TARGETS if name in found]
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
@@ -233,7 +236,7 @@ def _print_reproduced_numbers(result: "FinishedResult") -> None:
 
 
 def _print_reproduction_counts(results: "Sequence[FinishedResult]") -> None:
-    from rockflex.papers.silva_stojadinovic_2024 import Verdict
+    from rockflex.papers.silva_stojadinovic_2024._comparison import Verdict
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]
     rows.append(("all", *(str(sum(r.count(verdict) for r in results)) for verdict in Verdict)))

@@ -4,12 +4,12 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._schema import ReportKeys
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import ReportKeys
+from rockflex.foundation.units import UnitSystem
 
 EPILOG = """[bold]Examples[/bold]
 

@@ -8,24 +8,21 @@ from typing import Any
 import numpy as np
 import typer
 
-from rockflex._errors import InputError
-from rockflex._schema import BoucWenSchema, GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
-from rockflex._units import UnitSystem
 from rockflex.cli._options import flag_values, flags_of_tables, naming_flags_in_errors
 from rockflex.cli._structures import LoadedStructure
-from rockflex.modal import Ground, RockingProperties
-from rockflex.models import BoucWen, Restitution, parse_model
-from rockflex.structure.file import parse_toml_table
-from rockflex.study import (
-    WORK_LIMIT,
-    InitialState,
-    RunOptions,
-    checked_work_limit,
-    ground_under_structure,
-    yielding_model_labels,
-)
-from rockflex.study._ground_tables import GroundTable
-from rockflex.study.spec import RunOptionKeys, impact_law_name
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import BoucWenSchema, GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
+from rockflex.foundation.units import UnitSystem
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._impact import Restitution
+from rockflex.models._label import parse_model
+from rockflex.structure._ground import Ground
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure.file._toml_table import parse_toml_table
+from rockflex.studies._arguments import WORK_LIMIT, InitialState, checked_work_limit, ground_under_structure
+from rockflex.studies._ground_tables import GroundTable
+from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
+from rockflex.studies.spec import RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundSchema).items()} | {

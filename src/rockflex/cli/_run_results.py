@@ -7,22 +7,27 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockflex._errors import InputError
-from rockflex._language import translated, use_language
-from rockflex._schema import schema_keys
-from rockflex._shown import number_with_noun, shortened
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _output as output
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
 from rockflex.cli._run_options import lines_about_run_options
 from rockflex.cli._structures import LoadedStructure, elements_table
-from rockflex.fragility import NOMINAL
-from rockflex.motion import MEASURES, GroundMotion
-from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
-from rockflex.response import IMPACT_WINDOW, RESULT_UNITS, Response, history_columns, to_matlab, to_netcdf
-from rockflex.study import ground_under_structure
-from rockflex.study._ground_tables import GroundTable, SpringBedTable, SpringsTable
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated, use_language
+from rockflex.foundation.schema import schema_keys
+from rockflex.foundation.shown import number_with_noun, shortened
+from rockflex.foundation.units import UnitSystem
+from rockflex.fragility._limit_states import NOMINAL
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._measures import MEASURES
+from rockflex.report.run._report_page import checked_report_path, write_report
+from rockflex.report.run._reported_runs import MAX_RUNS
+from rockflex.response._exports import to_matlab, to_netcdf
+from rockflex.response._friction import IMPACT_WINDOW
+from rockflex.response._response import Response
+from rockflex.response._tables import RESULT_UNITS, history_columns
+from rockflex.studies._arguments import ground_under_structure
+from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -311,7 +316,8 @@ def write_run_results(
 def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun], form: str) -> None:
     import pandas as pd
 
-    from rockflex.plot import plot_history, save_figure
+    from rockflex.plot._figures import save_figure
+    from rockflex.plot._history import plot_history
 
     groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
     several = len({scale for (_, scale), _ in groups}) > 1

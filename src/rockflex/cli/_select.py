@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import number_with_noun, shown
 
 if TYPE_CHECKING:
-    from rockflex.motion import Combination, Selection, TargetSpectrum
+    from rockflex.motion._recordings import Combination
+    from rockflex.motion._spectra import TargetSpectrum
+    from rockflex.motion._suite import Selection
 
 
 WORDS = {"yes": True, "no": False}
@@ -25,7 +27,8 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
     """
-    from rockflex.motion import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
+    from rockflex.motion._target_files import read_target
+    from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum
 
     code, colon, rest = text.partition(":")
     if not colon or code not in ("ec8", "ec8-2024", "asce7"):
@@ -93,7 +96,7 @@ def _read_target_items(code: str, items: dict[str, str], needed: str, optional: 
 
 
 def _target_flag_acceleration(name: str, text: str) -> float:
-    from rockflex.motion import UNITS, acceleration_in_text
+    from rockflex.motion._units import UNITS, acceleration_in_text
 
     value = acceleration_in_text(text)
     if value is None:
@@ -214,7 +217,7 @@ def select(
 ) -> None:
     """Choose the records whose mean spectrum fits a target best, and scale each by one factor."""
     from rockflex.cli._find_motions import find_motions
-    from rockflex.motion import Suite
+    from rockflex.motion._suite import Suite
 
     if out is not None or records is None:
         output.check_output_folder(out, force=force)
@@ -312,7 +315,8 @@ def _print_selection(chosen: "Selection") -> None:
 
 
 def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
-    from rockflex.plot import plot_selection, save_figure
+    from rockflex.plot._figures import save_figure
+    from rockflex.plot._motion import plot_selection
 
     with output.staged_output_folder(folder, document, force=force) as stage:
         output.write_table(chosen.table(), stage / "selection.csv")
@@ -322,7 +326,7 @@ def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection"
 
 
 def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
-    from rockflex.motion import record_csv
+    from rockflex.motion._columns import record_csv
 
     with output.staged_output_folder(folder, document, force=force) as stage:
         for stem, motion in zip(

@@ -6,36 +6,30 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from rockflex._errors import InputError
-from rockflex._schema import PLAIN, FrameFlags, FrameSchema, ReportKeys, SchemaKey
-from rockflex._shown import number_with_noun
-from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
-from rockflex.modal import (
-    BaseElement,
-    ElementLaw,
-    FrictionDamper,
-    RockingProperties,
-    Tendon,
-    ViscousDamper,
-    YieldingDissipator,
-    element_parameters,
-)
-from rockflex.structure import Eccentric, Frame, Leaning, Restrained, structure_warnings
-from rockflex.structure.file import (
-    CLASS,
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import PLAIN, FrameFlags, FrameSchema, ReportKeys, SchemaKey
+from rockflex.foundation.shown import number_with_noun
+from rockflex.foundation.units import UnitSystem
+from rockflex.structure._attachment import element_parameters
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._frames import Frame
+from rockflex.structure._leaning import Leaning
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._structure import Eccentric, Restrained, structure_warnings
+from rockflex.structure.file._object_tables import CLASS, structure_from_table
+from rockflex.structure.file._structure_entry import (
     ELEMENTS,
     KINDS,
-    Built,
     StructureEntry,
-    TomlTable,
     build_structure_in_file,
-    parse_toml_table,
     read_toml_file,
-    structure_from_table,
 )
-from rockflex.study.spec import RunOptionKeys
+from rockflex.structure.file._structure_tables import Built
+from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
+from rockflex.studies.spec import RunOptionKeys
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -205,7 +199,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
 
 def _study_in_place_of_structure(file: Path, name: object) -> InputError:
     """Return the error for the file of a study in place of one of a structure."""
-    from rockflex.kinds import KINDS
+    from rockflex.studies._study_kind import KINDS
 
     known = isinstance(name, str) and name in KINDS
     remedy = f"Use rockflex {KINDS[str(name)].command} {file}." if known else "rockflex --help lists the studies."

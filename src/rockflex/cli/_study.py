@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from rockflex._errors import InputError, SolverError
-from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
-from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
-from rockflex.study.progress import duration_text, progress_bar, row_rate_text
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.studies._study_kind import KINDS, StudyFindings, StudyKind, study_kind_named
+from rockflex.studies.progress import duration_text, progress_bar, row_rate_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.study import StudySpec
-    from rockflex.study.progress import Progress
+    from rockflex.studies.progress import Progress
+    from rockflex.studies.spec import StudySpec
 
 
 Result = TypeVar("Result")
@@ -89,7 +89,7 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
         if dry_run:
             _announce_study(study, file, workers, json=json)
             return
-        from rockflex.kinds import run_study
+        from rockflex.studies._run_study import run_study
 
         table, seconds = _study_with_progress(study, file, out, partial(run_study, study, out, **how))
         if out is not None:
@@ -103,7 +103,7 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
 
 
 def _load_study_of_kind(kind: StudyKind, file: Path, work_limit: str | None) -> "StudySpec":
-    from rockflex.kinds import load_study
+    from rockflex.studies._run_study import load_study
 
     study = load_study(file)
     if study.kind != kind.name:
@@ -118,7 +118,7 @@ def _load_study_of_kind(kind: StudyKind, file: Path, work_limit: str | None) -> 
 
 def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json: bool) -> None:
     """Print how many runs a study has and about how long it takes."""
-    from rockflex.kinds import estimate_time
+    from rockflex.studies._run_study import estimate_time
 
     plan = study.plan()
     seconds = estimate_time(study, workers)
@@ -143,7 +143,7 @@ def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json
 
 def _store_study_share(study: "StudySpec", file: Path, out: Path, share: str, how: dict[str, Any]) -> None:
     """Store one share of a study."""
-    from rockflex.kinds import fill_study
+    from rockflex.studies._run_study import fill_study
 
     place, stroke, count = share.partition("/")
     if not (stroke and place.isdecimal() and count.isdecimal()):
@@ -162,7 +162,7 @@ def _study_with_progress(
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
 
-    from rockflex.study.parallel import ClusterError
+    from rockflex.studies.parallel import ClusterError
 
     last: list[Progress] = []
     start = perf_counter()
@@ -195,7 +195,7 @@ def print_study_summary(
     kind: StudyKind, study: "StudySpec", table: "pd.DataFrame", seconds: float, *, json: bool
 ) -> tuple[int, int]:
     """Print the summary of a study; return the number of failed runs and of failed fits."""
-    from rockflex.study import count_pivot_lifts
+    from rockflex.studies._result_tables import count_pivot_lifts
 
     found = StudyFindings()
     try:
@@ -287,7 +287,7 @@ def figures(
     """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if form not in FORMATS:
         raise InputError(f"--format must be one of {', '.join(FORMATS)}, but {shown(form)} was given.")
-    from rockflex.study.folders import StudyFolder
+    from rockflex.studies.folders._folder import StudyFolder
 
     target = folder / "figures" if out is None else out
     output.check_output_folder(target, force=force)
@@ -308,7 +308,7 @@ def figures(
         "parts": study.n_chunks,
         "missing_parts": missing,
     }
-    from rockflex.plot import figure_style, save_figure
+    from rockflex.plot._figures import figure_style, save_figure
 
     undrawn: list[str] = []
     style = figure_style(theme, _figure_size(size))  # pyright: ignore[reportArgumentType]

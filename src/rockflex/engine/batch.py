@@ -5,9 +5,9 @@ from math import isfinite
 import cython
 import numpy as np
 
-from rockflex._errors import InputError
 from rockflex.engine.failures import check_key
 from rockflex.engine.system import acceleration, array
+from rockflex.foundation.errors import InputError
 
 
 @cython.final

@@ -1,7 +1,7 @@
 from collections.abc import Sequence
 
-from rockflex._arrays import Array, Integers
 from rockflex.engine.system import Key, System
+from rockflex.foundation.arrays import Array, Integers
 
 class Batch:
     place: int

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._errors import InputError, SolverError
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError
+from rockflex.foundation.errors import InputError, SolverError
 
 
 class VectorLevelError(InputError, ImportError):

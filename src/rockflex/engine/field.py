@@ -9,7 +9,7 @@ import ctypes
 import cython
 import numpy as np
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 
 SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
 

@@ -1,6 +1,6 @@
 from collections.abc import Callable
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 
 class Field:
     failure: BaseException | None

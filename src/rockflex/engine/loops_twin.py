@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
 from rockflex.engine.field import Field
 from rockflex.engine.shaken import ShakenTables
 from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tables import AHEAD, BLOCK, Tables
+from rockflex.foundation.arrays import Array
 
 UNKNOWN, ENDS, ASKED = -1, -2, -3
 Climb = tuple[float, float]  # the vertical acceleration at the start of a series, and its change

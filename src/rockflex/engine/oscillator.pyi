@@ -1,6 +1,6 @@
 from collections.abc import Sequence
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 
 def peaks(acceleration: Array, h: float, frequencies: Array | Sequence[float], zeta: float) -> Array: ...
 def rotated_peaks(

@@ -10,13 +10,13 @@ from math import isfinite
 import cython
 import numpy as np
 
-from rockflex._errors import InputError
 from rockflex.engine import failures
 from rockflex.engine.rest import Fading
 from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
 from rockflex.engine.tables import prepared_phase_and_tables
+from rockflex.foundation.errors import InputError
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals

@@ -1,8 +1,8 @@
 from collections.abc import Callable
 
-from rockflex._arrays import Array, Integers
 from rockflex.engine.batch import Batch
 from rockflex.engine.system import Key, System
+from rockflex.foundation.arrays import Array, Integers
 
 class Run:
     watch: Callable[[], object] | None

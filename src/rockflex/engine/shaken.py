@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
 from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
 from rockflex.engine.tables import (
     FAST,
@@ -28,6 +27,7 @@ from rockflex.engine.tables import (
     spectral_radius_bound,
     tables_of,
 )
+from rockflex.foundation.arrays import Array, Bools
 
 MAX_FED = 4  # as in march.h
 NODES = 8, 16  # of the polynomials: the second number where the first is not exact

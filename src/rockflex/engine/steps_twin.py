@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
 from rockflex.engine.field import Field, Jump
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tableau import (
@@ -24,6 +23,7 @@ from rockflex.engine.tableau import (
     C,
 )
 from rockflex.engine.tables import Tables
+from rockflex.foundation.arrays import Array
 
 TERMS = 8  # of the polynomial over a step
 

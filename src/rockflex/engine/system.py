@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
 from rockflex.engine.field import Compiled, Field, Function, Jump
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
 
 Key = Hashable
 MAX_STATES, MAX_ROWS = 1000, 4096  # as in march.h

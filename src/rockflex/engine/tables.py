@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, System, up8
+from rockflex.foundation.arrays import Array
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost

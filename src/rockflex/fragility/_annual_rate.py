@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_in_range, checked_instance, checked_positive
-from rockflex._errors import InputError
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_in_range, checked_instance, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.values import Value
 from rockflex.fragility._arguments import Curve, FragilityCurve, checked_confidence, checked_fragility_curve
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._jackknife import sampled_band_limits

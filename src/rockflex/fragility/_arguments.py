@@ -6,10 +6,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite_vector, checked_in_range, float_array
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite_vector, checked_in_range, float_array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 Curve = Callable[[Array], Array]
 

@@ -7,11 +7,11 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite_vector, checked_whole_number, float_array
-from rockflex._errors import InputError, SolverError
-from rockflex._shown import shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite_vector, checked_whole_number, float_array
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.fragility import _regression
 from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 from rockflex.fragility._jackknife import RecordingGroups

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._html import HtmlTable
-from rockflex._shown import shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.fragility._arguments import (
     check_same_column_length,
     checked_probabilities,

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rockflex._arrays import Array, Bools
-from rockflex._cases import runs_by_case
-from rockflex._errors import InputError, SolverError
-from rockflex._html import HtmlTable
-from rockflex._shown import shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.cases import runs_by_case
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_cloud
 from rockflex.fragility._hazard import measure_damping_of_runs
 from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked_runs

@@ -14,11 +14,11 @@ from xml.etree import ElementTree as ET
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import check_all_positive, checked_finite_vector, checked_positive
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_given_file
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import check_all_positive, checked_finite_vector, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path, write_given_file
+from rockflex.foundation.shown import shown
 from rockflex.fragility._arguments import Curve, FragilityCurve, checked_fragility_curve
 from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, openquake_kind_and_period, openquake_unit_in_si
 from rockflex.fragility._lognormal import LognormalFragility

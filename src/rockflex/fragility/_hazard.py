@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite_vector, checked_in_range, checked_positive
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file, checked_file_path, unicode_text
-from rockflex._shown import number_with_noun, shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite_vector, checked_in_range, checked_positive
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file, checked_file_path, unicode_text
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.foundation.values import Value
 from rockflex.fragility._arguments import log_of_evaluation_points
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 
 N_SAMPLES = 2048  # parameters drawn; a power of two, as Sobol's sequence wants

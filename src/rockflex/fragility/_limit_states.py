@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_positive
-from rockflex._errors import InputError
-from rockflex._registry import Catalogue
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.registry import Catalogue
+from rockflex.foundation.shown import shown
 
 OVERTURNED = 0.5 * math.pi  # rad
 ROCKED = 1e-4  # rad; uplift with a smaller rotation does not count as rocking

@@ -8,11 +8,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError, SolverError
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.values import Value
 from rockflex.fragility import _jackknife, _regression
 from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
 from rockflex.fragility._hazard import measure_damping_of_column

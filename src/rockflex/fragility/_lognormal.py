@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite_matrix, checked_finite_vector, checked_positive
-from rockflex._errors import InputError, SolverError
-from rockflex._html import HtmlTable
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite_matrix, checked_finite_vector, checked_positive
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.values import Value
 from rockflex.fragility import _arguments, _jackknife
 from rockflex.fragility._regression import StandardisedLogs, fit_capacity_lines
 

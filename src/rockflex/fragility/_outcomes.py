@@ -8,13 +8,13 @@ from typing import Any, NamedTuple, Self, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite_vector, checked_positive
-from rockflex._errors import InputError, SolverError
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._shown import shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite_vector, checked_positive
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
 from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_cloud_line
 from rockflex.fragility._hazard import measure_damping_of_column

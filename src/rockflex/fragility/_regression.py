@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
+from rockflex.foundation.arrays import Array, Bools
 
 MAX_NEWTON_STEPS, MAX_SCORING_STEPS, MAX_HALVINGS = 100, 1000, 20  # largest numbers of iterations
 NEWTON_TOLERANCE = 1e-8  # of the parameters, at which Newton's method has converged

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.errors import InputError
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 from rockflex.models._rocking_model import RockingModel
 

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from rockflex._checks import checked_finite, checked_positive
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_finite, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
-from rockflex.modal import Branch, ElementLaw, slow_path
+from rockflex.foundation.arrays import Array
+from rockflex.structure._element_law import Branch, ElementLaw, slow_path
 
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper

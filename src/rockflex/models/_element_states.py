@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.models._element import FrictionElement
 from rockflex.models._elements import friction_damper_shares, is_held_by_dampers
 from rockflex.models._rocking_model import RockingModel

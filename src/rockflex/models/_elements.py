@@ -5,17 +5,8 @@ from itertools import accumulate
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex.modal import (
-    BaseElement,
-    ElementLaw,
-    FloorModes,
-    FrictionDamper,
-    RockingProperties,
-    ViscousDamper,
-    YieldingDissipator,
-)
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element import (
     HELD,
     BranchLimit,
@@ -29,6 +20,10 @@ from rockflex.models._element import (
 )
 from rockflex.models._phase import BaseEquations, Key
 from rockflex.models._state_layout import StateLayout
+from rockflex.structure._analysis import FloorModes
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, ViscousDamper, YieldingDissipator
+from rockflex.structure._rocking import RockingProperties
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 QUARTER_TURN = 0.5 * np.pi  # rad: a base that has rotated so far has overturned

@@ -1,7 +1,7 @@
 from collections.abc import Callable, Sequence
 
-from rockflex._arrays import Array
-from rockflex.engine import Field, Jump
+from rockflex.engine.field import Field, Jump
+from rockflex.foundation.arrays import Array
 from rockflex.models._vector_fields import FieldNumbers
 
 class RockingField(Field):

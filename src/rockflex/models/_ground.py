@@ -2,15 +2,17 @@
 
 import numpy as np
 
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import elements_of
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
+from rockflex.structure._elements import FrictionDamper
+from rockflex.structure._ground import Ground, Springs
+from rockflex.structure._rocking import RockingProperties
 
 TURNS = 20  # in which the lever arms of a tilted base are found
 STABLE = 1e-9  # relative: least stiffness of a base against toppling

@@ -1,8 +1,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from rockflex._arrays import Array
-from rockflex.engine import Field
+from rockflex.engine.field import Field
+from rockflex.foundation.arrays import Array
 from rockflex.models._phase import GroundPhase
 from rockflex.models._vector_fields import FieldNumbers
 

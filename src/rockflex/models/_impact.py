@@ -10,11 +10,11 @@ from typing import Protocol, runtime_checkable
 
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite, checked_positive
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.structure._rocking import RockingProperties
 
 
 @runtime_checkable

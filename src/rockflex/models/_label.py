@@ -7,14 +7,16 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._checks import checked_whole_number, is_one_of
-from rockflex._errors import InputError
-from rockflex._shown import number_with_noun, shown
-from rockflex.modal import FrictionDamper, Ground, RockingProperties, initial_force
+from rockflex.foundation.checks import checked_whole_number, is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base_on_ground, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._rocking_model import RockingModel
+from rockflex.structure._elements import FrictionDamper, initial_force
+from rockflex.structure._ground import Ground
+from rockflex.structure._rocking import RockingProperties
 
 _PATTERN = re.compile(
     r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|C|fixed)(?:-(?P<closure>SI|E))?(?P<yields>-BW)?(?P<missing>-R)?"

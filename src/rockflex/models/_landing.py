@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite, checked_finite_vector
-from rockflex._errors import InputError, SolverError
-from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite, checked_finite_vector
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.shown import shown
 from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
+from rockflex.structure._rocking import RockingProperties
 
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array, Integers
-from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.engine.system import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.foundation.arrays import Array, Integers
 from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._elements import (
     CLOSED,

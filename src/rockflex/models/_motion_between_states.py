@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex.engine import exponentials_less_identity, halvings_of, spectral_radius_bound
+from rockflex.engine.tables import exponentials_less_identity, halvings_of, spectral_radius_bound
+from rockflex.foundation.arrays import Array, Bools
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME

@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.modal import FloorModes
+from rockflex.foundation.arrays import Array
 from rockflex.models._elements import CLOSED
 from rockflex.models._quantities import (
     CLIMB,
@@ -21,6 +20,7 @@ from rockflex.models._quantities import (
     joined_quantities,
 )
 from rockflex.models._rocking_model import RockingModel
+from rockflex.structure._analysis import FloorModes
 
 
 def quantities(model: RockingModel, names: Iterable[str]) -> Quantities:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.engine import Event, StateLayout, System
+from rockflex.engine.system import Event, StateLayout, System
+from rockflex.foundation.arrays import Array
 from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._elements import CLOSED, QUARTER_TURN, internal_places, internal_variables_of_branches
 from rockflex.models._ground_fields import DEPTH, GRIP, PRESSURE, PUSH, SPEED, STRETCH

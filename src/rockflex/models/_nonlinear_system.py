@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array, Integers
-from rockflex._constants import GRAVITY
-from rockflex.engine import Event, LinearPhase, NonlinearPhase
+from rockflex.engine.system import Event, LinearPhase, NonlinearPhase
+from rockflex.foundation.arrays import Array, Integers
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._elements import (
     CLOSED,
     LEFT,

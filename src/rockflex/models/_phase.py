@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
+from rockflex.foundation.arrays import Array, Bools
 
 Key = tuple[int, ...]  # the branch of every element, the base first
 

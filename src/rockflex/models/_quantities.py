@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
-from rockflex.engine import by_rows
+from rockflex.engine.tables import by_rows
+from rockflex.foundation.arrays import Array
 from rockflex.models._elements import RIGHT
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._elements import CLOSED
 from rockflex.models._quantities import HORIZONTAL, VERTICAL

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
+from rockflex.engine.system import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.engine.tables import by_rows
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
 from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows

@@ -8,10 +8,9 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
-from rockflex._values import Value
-from rockflex.modal import RockingProperties, Springs
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.values import Value
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import Element, ViscousElement
 from rockflex.models._elements import (
@@ -44,6 +43,8 @@ from rockflex.models._state_layout import (
     n_branch_codes,
     state_layout_of,
 )
+from rockflex.structure._ground import Springs
+from rockflex.structure._rocking import RockingProperties
 
 MAX_PHASES = 1000  # whose equations of motion are kept
 

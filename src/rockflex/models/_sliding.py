@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
 from rockflex.models._elements import CLOSED, base_equations_of, element_force_sums
 from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key

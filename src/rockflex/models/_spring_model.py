@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
-from rockflex.modal import Springs
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
 from rockflex.models._elements import CLOSED, SUMS, internal_count, internal_places
 from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
@@ -24,6 +23,7 @@ from rockflex.models._state_layout import (
     codes_of_branches,
     n_branch_codes,
 )
+from rockflex.structure._ground import Springs
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 
 # Columns that precede the state vector in a history, and their number; GROUND and RISE are the horizontal and the
 # vertical acceleration of the ground.

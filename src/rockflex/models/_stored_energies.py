@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.modal import FloorModes
+from rockflex.foundation.arrays import Array
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, SIDE
 from rockflex.models._values_at_states import accelerations_at_states, acting_side
+from rockflex.structure._analysis import FloorModes
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._phase import Key

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.modal import RockingProperties
+from rockflex.foundation.arrays import Array
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import (
     LEFT,
@@ -23,6 +22,7 @@ from rockflex.models._ground_fields import GroundField
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import StateLayout
+from rockflex.structure._rocking import RockingProperties
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,8 @@ import re
 from datetime import date
 from pathlib import Path
 
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path
 from rockflex.motion import _text
 from rockflex.motion._declared import Declared
 from rockflex.motion._findings import Finding, quoted_line

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._recordings import are_different_components

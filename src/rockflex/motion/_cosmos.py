@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of

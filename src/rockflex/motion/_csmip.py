@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line, settled
 from rockflex.motion._fixed_width import fixed_width_numbers, lines_of
 from rockflex.motion._gmprocess import is_of_another_network

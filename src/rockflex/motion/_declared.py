@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from rockflex._checks import checked_positive
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion._findings import Evidence
 from rockflex.motion._units import AccelerationUnit, declared_acceleration_unit
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line
 from rockflex.motion._ground_motion import GroundMotion

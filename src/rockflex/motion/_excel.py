@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._archives import ArchiveError, ArchiveLimits, archive_bytes, open_archive
-from rockflex._errors import InputError, RecordWarning
-from rockflex._shown import first_texts_shown
+from rockflex.foundation.archives import ArchiveError, ArchiveLimits, archive_bytes, open_archive
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.shown import first_texts_shown
 from rockflex.motion import _text
 from rockflex.motion._columns import parse_columns
 from rockflex.motion._declared import Declared

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, Literal, TypeVar
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 
 T = TypeVar("T")
 What = Literal["quantity", "unit", "time step", "component", "samples"]

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._fixed_width import check_lines_follow, fixed_width_numbers, lines_of
 from rockflex.motion._ground_motion import GroundMotion

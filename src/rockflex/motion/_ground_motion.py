@@ -10,14 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive, real_or_nan
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, RecordWarning
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._shown import first_texts_shown, shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import (
+    checked_finite,
+    checked_finite_vector,
+    checked_instance,
+    checked_positive,
+    real_or_nan,
+)
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import first_texts_shown, shown
+from rockflex.foundation.values import Value
 from rockflex.motion import _signal, _spectra
 from rockflex.motion._record_info import RecordInfo
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._record_info import VERTICAL_NAME, component_azimuth, is_horizontal_component_name

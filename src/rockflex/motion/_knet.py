@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, quoted_line
 from rockflex.motion._ground_motion import GroundMotion

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from rockflex._checks import is_one_of
-from rockflex._errors import InputError
-from rockflex._registry import Catalogue
-from rockflex._shown import shown
+from rockflex.foundation.checks import is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.registry import Catalogue
+from rockflex.foundation.shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
 MIN_PERIOD = 1e-6  # s

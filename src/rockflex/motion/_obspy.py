@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion._findings import Evidence, NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_record_names, found_component

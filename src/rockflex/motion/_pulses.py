@@ -11,9 +11,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import checked_finite, checked_positive, is_one_of, real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_finite, checked_positive, is_one_of, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
 Float = NDArray[np.floating[Any]]

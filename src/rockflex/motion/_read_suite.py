@@ -7,10 +7,10 @@ from itertools import chain
 from pathlib import Path
 from typing import Literal, get_args
 
-from rockflex._checks import checked_positive
-from rockflex._errors import InputError, RecordWarning
-from rockflex._files import checked_file_path
-from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex.foundation.checks import checked_positive
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.shown import first_texts_shown, number_with_noun, shown
 from rockflex.motion._copies import duplicate_components, uncorrected_components
 from rockflex.motion._declared import Declared
 from rockflex.motion._findings import NoAccelerationError

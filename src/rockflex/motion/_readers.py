@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._checks import checked_instance
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, RecordWarning
-from rockflex._files import checked_file_path
-from rockflex._language import translated
-from rockflex._registry import Catalogue
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.language import translated
+from rockflex.foundation.registry import Catalogue
+from rockflex.foundation.shown import shown
 from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import at2_header_end, parse_at2
 from rockflex.motion._columns import parse_columns

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path
-from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.shown import first_texts_shown, number_with_noun, shown
 from rockflex.motion import _text
 from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._readers import FORMATS, is_of_a_network

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._errors import InputError
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._header import MAX_LINE, MAX_STEP, MIN_STEP, Lines, header_of_lines
 from rockflex.motion._labels import ACCELERATION, parse_label

@@ -12,8 +12,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TypeAlias, TypeVar
 
-from rockflex._checks import checked_positive
-from rockflex._errors import InputError
+from rockflex.foundation.checks import checked_positive
+from rockflex.foundation.errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._excel import excel_sheets, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo

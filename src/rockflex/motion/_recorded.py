@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.motion._findings import Evidence, Finding
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import FoundComponent, RecordInfo

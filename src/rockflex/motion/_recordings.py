@@ -11,12 +11,12 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_instance, real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import first_texts_shown, shown
-from rockflex._values import Value
 from rockflex.engine.oscillator import rotated_peaks
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_instance, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import first_texts_shown, shown
+from rockflex.foundation.values import Value
 from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._record_info import (
     SEPARATORS,

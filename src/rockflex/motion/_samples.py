@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
 from rockflex.motion._declared import Declared
 from rockflex.motion._findings import (
     Evidence,

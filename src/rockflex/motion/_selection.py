@@ -9,8 +9,8 @@ from typing import get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import (
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import (
     checked_finite_vector,
     checked_instance,
     checked_positive,
@@ -18,9 +18,9 @@ from rockflex._checks import (
     is_one_of,
     real_or_nan,
 )
-from rockflex._errors import InputError, RecordWarning
-from rockflex._language import translated
-from rockflex._shown import first_texts_shown, shown
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import first_texts_shown, shown
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
 from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._shown import number_with_noun
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import number_with_noun
 from rockflex.motion import _text
 from rockflex.motion._declared import Declared
 from rockflex.motion._findings import Evidence, Finding, quoted_line, shown_step

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.polynomial import legendre
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_positive, checked_whole_number, real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive, checked_whole_number, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 MAX_REFINEMENT = 10_000  # largest number of new steps per old step
 

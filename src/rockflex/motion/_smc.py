@@ -8,8 +8,8 @@ https://escweb.wr.usgs.gov/nsmp-data/smcfmt.html
 import re
 from pathlib import Path
 
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion import _text
 from rockflex.motion._findings import Evidence, NoAccelerationError, quoted_line
 from rockflex.motion._fixed_width import fixed_width_numbers

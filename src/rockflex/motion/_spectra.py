@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import (
+from rockflex.engine.oscillator import peaks
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import (
     check_all_positive,
     checked_finite_vector,
     checked_in_range,
     checked_instance,
     checked_positive,
 )
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.engine.oscillator import peaks
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 
 MIN_PERIOD = 1e-6  # s
 N_COMPARED = 50  # periods at which a range is examined

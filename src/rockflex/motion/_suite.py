@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_instance, is_one_of
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._html import HtmlTable, value_range_text
-from rockflex._shown import few_texts_shown, number_with_noun, shown
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_instance, is_one_of
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.html import HtmlTable, value_range_text
+from rockflex.foundation.shown import few_texts_shown, number_with_noun, shown
+from rockflex.foundation.values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._recordings import Combination, Recording

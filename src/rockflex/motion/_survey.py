@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
-from rockflex._language import translated
-from rockflex._values import Value
+from rockflex.foundation.language import translated
+from rockflex.foundation.values import Value
 from rockflex.motion import _read_suite
 from rockflex.motion._findings import Finding, What
 from rockflex.motion._ground_motion import GroundMotion, record_info_of

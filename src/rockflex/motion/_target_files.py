@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path
-from rockflex._shown import few_texts_shown, shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.shown import few_texts_shown, shown
 from rockflex.motion import _text
 from rockflex.motion._declared import Declared, declared
 from rockflex.motion._findings import Evidence, quoted_line, settled

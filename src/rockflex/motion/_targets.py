@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from rockflex._checks import checked_finite_vector, checked_positive, is_one_of, real_or_nan
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_finite_vector, checked_positive, is_one_of, real_or_nan
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.

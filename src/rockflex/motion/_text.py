@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file
-from rockflex._shown import number_with_noun, shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file
+from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.motion._findings import NoAccelerationError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._labels import parse_label

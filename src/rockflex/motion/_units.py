@@ -6,9 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 Quantity = Literal["acceleration", "velocity", "displacement", "force", "counts", "spectrum", "time", "frequency"]
 UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "mg": 1e-3 * GRAVITY, "in/s2": 0.0254}

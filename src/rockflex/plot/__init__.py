@@ -1,8 +1,8 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
-from rockflex.plot._comparison import draw_alternatives, plot_comparison
+from rockflex.plot._comparison import plot_comparison
 from rockflex.plot._design import plot_design, plot_design_search
-from rockflex.plot._figures import figure_as_png, figure_as_svg, figure_style, figures_in_units, save_figure
+from rockflex.plot._figures import figure_style, save_figure
 from rockflex.plot._fragility import plot_clouds, plot_fragility, plot_ida, plot_stripes
 from rockflex.plot._history import plot_energy, plot_footing, plot_history, plot_spread
 from rockflex.plot._loops import (
@@ -15,19 +15,12 @@ from rockflex.plot._loops import (
 from rockflex.plot._motion import plot_motion, plot_overturning_spectrum, plot_rocking_spectrum, plot_selection
 from rockflex.plot._pushover import plot_pushover
 from rockflex.plot._record_set import plot_set
-from rockflex.plot._run_sheet import draw_record_strip, draw_run_sheet
 from rockflex.plot._structure import plot_frequency_equation, plot_frequency_ratios, plot_mode_shapes, plot_tower
 from rockflex.plot.animation import animate
 
 __all__ = [
     "animate",
-    "draw_alternatives",
-    "draw_record_strip",
-    "draw_run_sheet",
-    "figure_as_png",
-    "figure_as_svg",
     "figure_style",
-    "figures_in_units",
     "plot_clouds",
     "plot_comparison",
     "plot_design",

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockflex._checks import checked_instance
-from rockflex._language import translated
+from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import Size
 from rockflex.plot._history import plot_history, response_curves
 from rockflex.plot.animation._poses import FrameTiming, default_amplification, outline_of_response, structure_poses
 from rockflex.plot.animation._scene import StructurePanel
-from rockflex.response import Comparison
+from rockflex.response._comparison import Comparison
 
 _MM = 1.0 / 25.4  # inches
 _STILL = 1e-9  # speed of the response, at which no impact is marked after its instant

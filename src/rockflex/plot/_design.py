@@ -9,17 +9,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_instance
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._units import Unit
-from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.units import Unit
+from rockflex.fragility._limit_states import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GREEN, LINE_STYLES, ORANGE, RED, SMALL, LineStyle, Size
-from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, smallest_width, trade_off
+from rockflex.studies.design._best_design import BestDesign, InterpolatedMargins, trade_off
+from rockflex.studies.design._design_table import smallest_width
+from rockflex.studies.design._requirements import requirement_margins
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -22,13 +22,13 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, Formatter
 
-from rockflex._checks import is_one_of
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_given_file
-from rockflex._language import Language, chosen_language, use_language
-from rockflex._number_format import unit_with_prefix
-from rockflex._shown import shown
-from rockflex._units import (
+from rockflex.foundation.checks import is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path, write_given_file
+from rockflex.foundation.language import Language, chosen_language, use_language
+from rockflex.foundation.number_format import unit_with_prefix
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import (
     QUANTITIES,
     Decimal,
     SystemName,

@@ -10,14 +10,25 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rockflex import fragility
-from rockflex._cases import runs_by_case, runs_of_case
-from rockflex._checks import checked_whole_number
-from rockflex._errors import InputError, SolverError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._shown import shown
-from rockflex._units import Unit
+from rockflex.foundation.cases import runs_by_case, runs_of_case
+from rockflex.foundation.checks import checked_whole_number
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import Unit
+from rockflex.fragility._cloud import CloudFit
+from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud, recordings_of_runs
+from rockflex.fragility._limit_states import (
+    NOMINAL,
+    OVERTURNING,
+    ROCKED,
+    limit_state_of,
+    observed_exceedance_fractions,
+    rocked_runs,
+)
+from rockflex.fragility._logistic import LogisticFit
+from rockflex.fragility._lognormal import LognormalFragility, fit_capacities, fit_stripes
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
@@ -25,7 +36,7 @@ from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineSty
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.study.stripes import StripeLimit
+    from rockflex.studies.stripes import StripeLimit
 
 _POINTS = 400
 _LOGIT_END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
@@ -46,7 +57,7 @@ _CROSSES = 0.038  # and of the crosses
 
 
 def plot_fragility(
-    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]",
+    clouds: "pd.DataFrame | Sequence[CloudFits]",
     measure: str | None = None,
     *,
     confidence: float | None = None,
@@ -145,17 +156,17 @@ def plot_fragility(
 
 
 def _fits_of_clouds(
-    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]", measure: str | None, groups: int
-) -> "tuple[list[fragility.CloudFits], pd.DataFrame | None]":
+    clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
+) -> "tuple[list[CloudFits], pd.DataFrame | None]":
     """The fits, and the solved runs if they are known."""
     if hasattr(clouds, "columns"):
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
-        found = fragility.fit_clouds(runs, measure or "pgv")
+        found = fit_clouds(runs, measure or "pgv")
         if not found:
             raise InputError("The table has no rows. Give what run_cloud returned.")
         return found, runs[runs["status"].notna()]
     given: list[Any] = list(clouds)
-    fits = [fit for fit in given if isinstance(fit, fragility.CloudFits)]
+    fits = [fit for fit in given if isinstance(fit, CloudFits)]
     if not fits or len(fits) < len(given):
         raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
     measures = tables.names_in_column(fit.measure for fit in fits)
@@ -169,14 +180,14 @@ def _fits_of_clouds(
     return fits, None
 
 
-def _outcome_axis_limit(fits: list[fragility.CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
+def _outcome_axis_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
     """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
-        if isinstance(rocks, fragility.LogisticFit) and rocks.b1 > 0.0:
+        if isinstance(rocks, LogisticFit) and rocks.b1 > 0.0:
             ends.append(float(np.exp((_LOGIT_END - rocks.b0) / rocks.b1)))
-        if whole and isinstance(falls, fragility.LogisticFit) and falls.b1 > 0.0:
+        if whole and isinstance(falls, LogisticFit) and falls.b1 > 0.0:
             ends.append(2.0 * falls.median)
     if runs is None:
         return max(ends, default=1.0)
@@ -196,11 +207,11 @@ def _draw_fragility_curve(
 
 
 def _mark_observed_fractions(
-    axes: Axes, runs: "pd.DataFrame", fit: fragility.CloudFits, marker: str, color: str, groups: int
+    axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int
 ) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = fragility.rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    observed = fragility.observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
+    observed = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         *zip(*observed, strict=True), marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7,
         label="_observed",
@@ -260,7 +271,7 @@ def plot_stripes(
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     tables.check_table_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.stripes import stripe_counts
+    from rockflex.studies.stripes import stripe_counts
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
@@ -269,7 +280,7 @@ def plot_stripes(
     names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with figures.applied_figure_style(size=size):
-        event = translated(fragility.limit_state_of(limit).symbol)
+        event = translated(limit_state_of(limit).symbol)
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
@@ -304,13 +315,11 @@ def _lognormal_text(median: str, beta: float) -> str:
     return translated("median {median}, β = {beta}", median=median, beta=f"{beta:.2f}")
 
 
-def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> fragility.LognormalFragility | None:
+def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
     solved = runs[runs["status"].notna()]
-    exceeded = fragility.limit_state_of(limit).exceeded(solved).astype(bool)
+    exceeded = limit_state_of(limit).exceeded(solved).astype(bool)
     try:
-        return fragility.fit_stripes(
-            solved["level"], exceeded, np.ones(len(solved)), fragility.recordings_of_runs(solved)
-        )
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
     except (InputError, SolverError):
         return None
 
@@ -360,7 +369,7 @@ def plot_ida(
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
     tables.check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
-    from rockflex.study.incremental import incremental_capacities
+    from rockflex.studies.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
     cases = list(runs_by_case(runs))
@@ -450,7 +459,7 @@ def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | N
         at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
         axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
     with suppress(InputError):  # too few records
-        fit = fragility.fit_capacities(reached, censored, rows["group"])
+        fit = fit_capacities(reached, censored, rows["group"])
         end = float(reached.max()) * 1.3
         known = None if fit.covariance is None else confidence
         _draw_fragility_curve(axes, fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
@@ -472,7 +481,7 @@ class _PlottedCloud(NamedTuple):
     rocked: "pd.DataFrame"
     fallen: "pd.DataFrame"
     n_failed: int
-    line: fragility.CloudFit | None
+    line: CloudFit | None
     fitted: bool
 
 
@@ -483,7 +492,7 @@ def plot_clouds(
     ] = "max_rotation",
     measure: str = "pgv",
     *,
-    threshold: float = fragility.ROCKED,
+    threshold: float = ROCKED,
     nominal: bool = False,
     size: Size | None = None,
 ) -> Figure:
@@ -569,7 +578,7 @@ def _plotted_clouds(
     runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool
 ) -> list[_PlottedCloud]:
     """Clouds of all structures and models, in the order of the table."""
-    fits, _ = fragility.fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
+    fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     everything = runs[runs["status"].notna()]
     if not len(everything):
@@ -583,8 +592,8 @@ def _plotted_clouds(
     clouds: list[_PlottedCloud] = []
     for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
-        fell = (fragility.NOMINAL if nominal else fragility.OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocks = ~fell & fragility.rocked_runs(solved, threshold).to_numpy(dtype=bool)
+        fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
+        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)

@@ -11,16 +11,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._shown import shown
-from rockflex._units import Unit
-from rockflex.modal import RockingProperties, Springs, Tendon
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import Unit
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
-from rockflex.response import History, Response, history_of
+from rockflex.response._history import History
+from rockflex.response._response import Response, history_of
+from rockflex.structure._elements import Tendon
+from rockflex.structure._ground import Springs
+from rockflex.structure._rocking import RockingProperties
 
 _MARGIN = 1.12
 _BAR = 0.025  # height of an uplift bar as a share of the panel

@@ -13,35 +13,38 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from rockflex import modal
-from rockflex._arrays import Array
-from rockflex._checks import checked_positive
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number, unit_with_prefix
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number, unit_with_prefix
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Size
 from rockflex.plot._history import ResponseCurve
-from rockflex.response import (
+from rockflex.response._moment_rotation import (
     MomentRotation,
     MomentRotationOnSprings,
-    Response,
     element_resistance,
     large_resistance,
     resistance_on_springs,
-    static_path,
     weight_resistance,
 )
-from rockflex.study import RockingStructure, rocking_properties_of
+from rockflex.response._quasi_static import static_path
+from rockflex.response._response import Response
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._pivot import Pivot
+from rockflex.structure._rocking import RockingProperties
+from rockflex.studies._arguments import RockingStructure, rocking_properties_of
 
 _COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
-_ELEMENT_NAMES: dict[type[modal.BaseElement], str] = {
-    modal.Tendon: "tendon",
-    modal.YieldingDissipator: "fuse",
-    modal.ViscousDamper: "viscous damper",
-    modal.FrictionDamper: "friction damper",
+_ELEMENT_NAMES: dict[type[BaseElement], str] = {
+    Tendon: "tendon",
+    YieldingDissipator: "fuse",
+    ViscousDamper: "viscous damper",
+    FrictionDamper: "friction damper",
 }
 _PER_ROW = 2
 _LIMIT = 1.1
@@ -74,7 +77,7 @@ class BaseLoops:
     """
 
     title: str
-    elements: tuple[modal.BaseElement, ...]
+    elements: tuple[BaseElement, ...]
     rotation: Array
     weight: Array
     parts: Array
@@ -135,20 +138,20 @@ def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
     )  # fmt: skip
 
 
-def is_moment_path_independent(properties: modal.RockingProperties) -> bool:
+def is_moment_path_independent(properties: RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
     return all(
         not any(branch.yields for branch in each.law.values())
-        if isinstance(each, modal.ElementLaw)
-        else isinstance(each, modal.Tendon) and each.post_yield_ratio is None
+        if isinstance(each, ElementLaw)
+        else isinstance(each, Tendon) and each.post_yield_ratio is None
         for each in properties.elements
     )
 
 
-def _element_name(elements: Sequence[modal.BaseElement], place: int) -> str:
+def _element_name(elements: Sequence[BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
-    words = element.words if isinstance(element, modal.ElementLaw) else _ELEMENT_NAMES[type(element)]
+    words = element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
     where = element.where_in(figures.axis_unit("length"))
     return f"{place + 1} {translated(words)}, {where}"
 
@@ -520,7 +523,7 @@ def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float, 
 
 
 def plot_moment_rotation_laws(
-    structure: "RockingStructure | modal.RockingProperties",
+    structure: "RockingStructure | RockingProperties",
     spring: float | None = None,
     *,
     rotation: float | None = None,
@@ -639,7 +642,7 @@ def _rotation_of_zero_moment(rotation: Array, moment: Array) -> float:
     return float(rotation[k] + (rotation[k + 1] - rotation[k]) * moment[k] / (moment[k] - moment[k + 1]))
 
 
-def _moment_slope_text(sides: tuple[modal.Pivot, modal.Pivot], *, symmetric: bool) -> str:
+def _moment_slope_text(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
     held = any(side.tendon_stiffness for side in sides)
     name = r"k_t - L_0^r\,g" if held else r"-L_0^r\,g"
     values = [_moment_with_unit(side.rocking_stiffness, "N m/rad") for side in sides]

@@ -9,13 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._units import Unit
-from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.units import Unit
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._measures import MEASURES, MeasureInput
+from rockflex.motion._suite import Selection
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, LINE_STYLES, ORANGE, RED, SHADE, LineStyle, Size
 from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly

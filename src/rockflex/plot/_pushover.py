@@ -3,11 +3,11 @@
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex._checks import checked_instance
-from rockflex._number_format import short_number, unit_with_prefix
+from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.number_format import short_number, unit_with_prefix
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, ORANGE, SMALL, Size
-from rockflex.response import BilinearFit, Pushover
+from rockflex.response._pushover import BilinearFit, Pushover
 
 _MAX_NOTES = 12  # events that are listed
 

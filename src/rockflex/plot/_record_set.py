@@ -7,15 +7,16 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex._checks import checked_instance
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import unit_with_prefix
-from rockflex._shown import few_texts_shown, shortened
-from rockflex._units import KN
+from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import unit_with_prefix
+from rockflex.foundation.shown import few_texts_shown, shortened
+from rockflex.foundation.units import KN
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, GRAY, GREEN, ORANGE, RED, SKY, SMALL, Size
-from rockflex.response import DEMANDS, RecordSet
+from rockflex.response._demands import DEMANDS
+from rockflex.response._record_set import RecordSet
 
 USUAL = ("max_rotation", "max_total_top_displacement", "max_base_moment", "max_base_shear")
 LINES = {

@@ -8,13 +8,13 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex._arrays import Array
-from rockflex._language import translated
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import ResponseCurve
 from rockflex.plot._loops import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
-from rockflex.response import Response
+from rockflex.response._response import Response
 
 _MM = 1.0 / 25.4  # inches
 _MARGIN = 1.08

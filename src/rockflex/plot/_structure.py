@@ -12,19 +12,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Wedge
 
-from rockflex import modal
-from rockflex._arrays import Array
-from rockflex._checks import checked_positive, checked_whole_number
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive, checked_whole_number
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.shown import shown
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly, model_line_styles
-from rockflex.structure import TaperedTower
+from rockflex.structure._analysis import ModalProperties
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Structure
-from rockflex.study import RockingStructure, rocking_properties_of
+from rockflex.structure._towers import TaperedTower
+from rockflex.structure._uplifted import PinnedBeam, UpliftedModes, frequency_equation, uplifted_modes
+from rockflex.studies._arguments import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +44,7 @@ _MARGIN = 1.06
 
 
 def plot_mode_shapes(
-    structure_or_modal: Structure | modal.ModalProperties, n_modes: int | None = None, *, size: Size | None = None
+    structure_or_modal: Structure | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
 ) -> Figure:
     """Plot the mode shapes Γ_n φ_n over the height, one panel each.
 
@@ -78,12 +80,12 @@ def plot_mode_shapes(
     >>> len(figure.axes), figure.axes[0].get_ylabel()
     (2, 'height [m]')
     """
-    if not isinstance(structure_or_modal, modal.ModalProperties) and not hasattr(structure_or_modal, "modal"):
+    if not isinstance(structure_or_modal, ModalProperties) and not hasattr(structure_or_modal, "modal"):
         raise InputError(
             "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
             f"{type(structure_or_modal).__name__} was given. Give the structure itself, or structure.modal()."
         )
-    modes = structure_or_modal if isinstance(structure_or_modal, modal.ModalProperties) else structure_or_modal.modal()
+    modes = structure_or_modal if isinstance(structure_or_modal, ModalProperties) else structure_or_modal.modal()
     # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
@@ -105,7 +107,7 @@ def plot_mode_shapes(
     return figure
 
 
-def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: float | None) -> None:
+def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
     heights = np.concatenate(([0.0], modes.heights)) / figures.axis_unit("length").size
     axes.axvline(0.0, color=GRAY, linewidth=0.8)
@@ -121,7 +123,7 @@ def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: fl
     axes.set_title(_mode_description(modes, n, total), fontsize=figures.scaled_font_size(8.0))
 
 
-def _mode_description(modes: modal.ModalProperties, n: int, total: float | None) -> str:
+def _mode_description(modes: ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
         kilograms, name = figures.axis_unit("mass")
@@ -134,7 +136,7 @@ def _mode_description(modes: modal.ModalProperties, n: int, total: float | None)
 
 
 def plot_frequency_equation(
-    structures: "RockingStructure | modal.RockingProperties | Mapping[str, RockingStructure | modal.RockingProperties]",
+    structures: "RockingStructure | RockingProperties | Mapping[str, RockingStructure | RockingProperties]",
     n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
     *,
     highest: float | None = None,
@@ -213,26 +215,26 @@ def plot_frequency_equation(
 
 
 def _truncated_models(
-    structure: "RockingStructure | modal.RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
-) -> dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]]:
+    structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
+) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
     """Truncated properties and uplifted modes by the models' labels."""
     full = rocking_properties_of(structure)
     if full.n_modes == 0:
         raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
-    found: dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]] = {}
+    found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
     for each in n_modes:
         count = full.n_modes if each is None else checked_whole_number("n_modes", each, 1, full.n_modes)
         truncated = full.truncated(count)
         found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (
             truncated,
-            modal.uplifted_modes(truncated, side=side),
+            uplifted_modes(truncated, side=side),
         )
     return found
 
 
 def _draw_frequency_equation(
     axes: Axes,
-    models: dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]],
+    models: dict[str, tuple[RockingProperties, UpliftedModes]],
     styles: dict[str, LineStyle],
     highest: float | None,
     side: int | None,
@@ -250,7 +252,7 @@ def _draw_frequency_equation(
         style = styles[label]
         omega = _frequencies_between_poles(p.omega, end * first)
         inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
-        ordinate = modal.frequency_equation(p, omega, side=side) / (inertia * first**2)
+        ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
         order = 2.5 - 0.1 * style.width
         axes.plot(omega / first, ordinate, **style.look, linewidth=style.width, label=label, zorder=order)
@@ -275,7 +277,7 @@ def _frequencies_between_poles(poles: Array, end: float) -> Array:
 
 def plot_frequency_ratios(
     tables: "pd.DataFrame | Mapping[str, pd.DataFrame]",
-    limits: modal.PinnedBeam | Mapping[str, modal.PinnedBeam] | None = None,
+    limits: PinnedBeam | Mapping[str, PinnedBeam] | None = None,
     *,
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
@@ -388,7 +390,7 @@ def _frequency_ratio_handles(
 
 
 def _check_frequency_ratios(
-    named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, modal.PinnedBeam], modes: list[int]
+    named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]
 ) -> None:
     if not modes:
         raise InputError("modes is empty. Give at least one mode, counted from 1.")

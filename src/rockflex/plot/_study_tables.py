@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._number_format import short_number
-from rockflex._shown import shown
-from rockflex.motion import MEASURES
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.shown import shown
+from rockflex.motion._measures import MEASURES
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, GREEN, LINE_STYLES, RED, LineStyle
 

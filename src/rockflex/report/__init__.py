@@ -1,35 +1,9 @@
-"""Results as documents.
+"""Results as documents: a run, a study, a project or a publication.
 
-A run is one page of HTML, for an appendix; a publication is a page of HTML, the same as Markdown, and a table of
-numbers.
+A run is one page of HTML, for an appendix; a project is one file; a publication is a page of HTML, the same as
+Markdown, and a table of numbers. Names are imported when they are first used. The signatures are in ``__init__.pyi``.
 """
 
-from rockflex.report._document import (
-    ConstructionCheck,
-    FinishedResult,
-    PublicationReport,
-    PublishedNumber,
-    Remark,
-    ReproducedResult,
-)
-from rockflex.report._publication_files import (
-    report_numbers_to_csv,
-    report_to_html,
-    report_to_markdown,
-    write_publication_report,
-)
-from rockflex.report.run import write_report
+import lazy_loader as lazy
 
-__all__ = [
-    "ConstructionCheck",
-    "FinishedResult",
-    "PublicationReport",
-    "PublishedNumber",
-    "Remark",
-    "ReproducedResult",
-    "report_numbers_to_csv",
-    "report_to_html",
-    "report_to_markdown",
-    "write_publication_report",
-    "write_report",
-]
+__getattr__, __dir__, __all__ = lazy.attach_stub(__name__, __file__)

@@ -106,7 +106,7 @@ class ReproducedResult:
         """Compute the remarks, and draw the figures; without either unless it is to be `whole`."""
         if not whole:
             return FinishedResult(self.name, self.title, self.numbers, note=self.note, checks=self.checks)
-        from rockflex.plot import figure_as_svg
+        from rockflex.plot._figures import figure_as_svg
 
         remarks = tuple(remark() for remark in self.remarking)
         drawings = {stem: figure_as_svg(draw()) for stem, draw in self.figures.items()}

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._files import write_file_atomically
+from rockflex.foundation.files import write_file_atomically
 from rockflex.report._document import FinishedResult, PublicationReport, PublishedLine
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import is_one_of
-from rockflex._errors import InputError
-from rockflex._shown import number_with_noun, shown
-from rockflex._values import Value
-from rockflex.motion import GroundMotion
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.foundation.values import Value
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._demands import COMPARED_DEMANDS
 from rockflex.response._record_set import FRACTILE, MEDIAN, fractile
 from rockflex.response._response import Response

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from rockflex._units import Unit, UnitSystem
+from rockflex.foundation.units import Unit, UnitSystem
 
 
 class Demand(NamedTuple):

@@ -14,28 +14,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._values import Value
-from rockflex.models import (
-    CLOSED,
-    HEADER,
-    LOADED,
-    SIDE,
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.values import Value
+from rockflex.models._base_motion import horizontal_reaction
+from rockflex.models._element_states import element_energies
+from rockflex.models._elements import CLOSED, rate_of_elongation_row
+from rockflex.models._motion_between_states import (
     IntervalsOfPhase,
-    Key,
     LinearMotion,
     MotionBetween,
-    RockingModel,
     VerticalShaking,
-    element_energies,
-    horizontal_reaction,
-    rate_of_elongation_row,
     series_between_states,
-    soil_strain,
-    stored_energies,
-    under_more_gravity,
 )
+from rockflex.models._phase import Key
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import LOADED
+from rockflex.models._state_layout import HEADER, SIDE
+from rockflex.models._stored_energies import soil_strain, stored_energies
+from rockflex.models._values_at_states import under_more_gravity
 
 
 @dataclass(frozen=True, eq=False)

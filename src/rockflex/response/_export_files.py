@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_given_file
-from rockflex._shown import shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path, write_given_file
+from rockflex.foundation.shown import shown
 from rockflex.response._tables import DIMENSIONS, QUANTITIES, history_values, import_xarray
 
 History = Any  # rockflex.response.History, which imports this module

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.motion import MEASURES
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.motion._measures import MEASURES
 from rockflex.response._export_files import Variable, history_variables, write_matlab, write_netcdf
 from rockflex.response._history import History
 from rockflex.response._response import Response, history_of

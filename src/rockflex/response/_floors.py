@@ -7,14 +7,18 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite_vector, checked_positive, checked_whole_number
-from rockflex._errors import InputError, MissingQuantityError
-from rockflex._values import Value
-from rockflex.modal import FloorModes
-from rockflex.models import TIME, RockingModel, floor_accelerations, floor_quantities, quantities_at_states
-from rockflex.motion import GroundMotion
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite_vector, checked_positive, checked_whole_number
+from rockflex.foundation.errors import InputError, MissingQuantityError
+from rockflex.foundation.values import Value
+from rockflex.models._named_quantities import floor_quantities
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import TIME
+from rockflex.models._stored_energies import floor_accelerations
+from rockflex.models._values_at_states import quantities_at_states
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._interpolation import even_instants, interpolated_states
+from rockflex.structure._analysis import FloorModes
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -9,23 +9,15 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_positive, real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.models import (
-    GROUND,
-    HEADER,
-    RISE,
-    SIDE,
-    TIME,
-    MotionBetween,
-    Reactions,
-    RockingModel,
-    accelerations_at_states,
-    printed_reactions,
-    reactions,
-)
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.models._motion_between_states import MotionBetween
+from rockflex.models._reactions import Reactions, printed_reactions, reactions
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.models._values_at_states import accelerations_at_states
 from rockflex.response._interpolation import interpolated_columns, quintic
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes

@@ -9,24 +9,17 @@ from typing import TYPE_CHECKING, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite_rows
-from rockflex._errors import MissingQuantityError
-from rockflex._shown import number_with_noun
-from rockflex._values import Value
-from rockflex.modal import Springs, Tendon
-from rockflex.models import (
-    GROUND,
-    HEADER,
-    RISE,
-    SIDE,
-    TIME,
-    RockingModel,
-    accelerations_at_states,
-    element_forces,
-    spring_forces,
-)
-from rockflex.motion import GroundMotion
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite_rows
+from rockflex.foundation.errors import MissingQuantityError
+from rockflex.foundation.shown import number_with_noun
+from rockflex.foundation.values import Value
+from rockflex.models._element_states import element_forces
+from rockflex.models._reactions import spring_forces
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.models._values_at_states import accelerations_at_states
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger, energy_ledger
 from rockflex.response._export_files import history_variables, write_matlab, write_netcdf
 from rockflex.response._floors import floor_histories, floor_motion
@@ -34,12 +27,14 @@ from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, interpolated_states, only_of_run, settled_rotation
 from rockflex.response._peaks import global_histories
 from rockflex.response._tables import history_to_dataframe, history_to_dataset
+from rockflex.structure._elements import Tendon
+from rockflex.structure._ground import Springs
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from rockflex.motion import ResponseSpectrum
+    from rockflex.motion._spectra import ResponseSpectrum
 
 
 @dataclass(frozen=True, eq=False, repr=False)

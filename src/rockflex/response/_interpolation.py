@@ -6,24 +6,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite_vector, checked_positive
-from rockflex._errors import InputError, MissingQuantityError
-from rockflex._shown import shown
-from rockflex.models import (
-    GROUND,
-    HEADER,
-    RISE,
-    SIDE,
-    TIME,
-    BoucWen,
-    MotionBetween,
-    Quantities,
-    RockingModel,
-    StateLayout,
-    accelerations_at_states,
-)
-from rockflex.solve import Engine
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite_vector, checked_positive
+from rockflex.foundation.errors import InputError, MissingQuantityError
+from rockflex.foundation.shown import shown
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._motion_between_states import MotionBetween
+from rockflex.models._prepared_model import PreparedModel
+from rockflex.models._quantities import Quantities
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
+from rockflex.models._values_at_states import accelerations_at_states
 
 Motion = tuple[Array, Array, Array]
 
@@ -209,7 +202,7 @@ def settled_rotation(model: RockingModel, states: Array, work_limit: float | Non
         return math.nan
     (key,) = model.branches_at(last[:, SIDE], layout.of(last, layout.rotation), last).astype(np.int64).tolist()
     step = float(np.median(np.diff(np.unique(states[:, 0])))) if states.shape[0] > 1 else 0.01
-    found = Engine(model, Quantities.none(layout.modes)).run(
+    found = PreparedModel(model, Quantities.none(layout.modes)).run(
         np.zeros(2), step, free_vibration=None, state=(tuple(key), last[0, HEADER:].copy()), work_limit=work_limit
     )
     return math.nan if found.overturned else float(found.final_state[layout.rotation]) - model.rest.rotation

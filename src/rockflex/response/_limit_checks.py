@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_in_range, checked_instance, checked_positive
-from rockflex._errors import InputError, MissingQuantityError
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._shown import number_with_noun, shown
-from rockflex._units import UnitSystem
-from rockflex._values import Value
-from rockflex.modal import YieldingDissipator
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_in_range, checked_instance, checked_positive
+from rockflex.foundation.errors import InputError, MissingQuantityError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.foundation.units import UnitSystem
+from rockflex.foundation.values import Value
 from rockflex.response._history import History
 from rockflex.response._moment_rotation import contact_length
 from rockflex.response._record_set import RecordSet, design_value
 from rockflex.response._response import Response, history_of
+from rockflex.structure._elements import YieldingDissipator
 
 if TYPE_CHECKING:
     import pandas as pd

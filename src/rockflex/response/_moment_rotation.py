@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
-from rockflex._shown import number_with_noun
-from rockflex._values import Value
-from rockflex.modal import BaseElement, RockingProperties, Springs
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.shown import number_with_noun
+from rockflex.foundation.values import Value
 from rockflex.response._history import History, soil_pressure
+from rockflex.structure._elements import BaseElement
+from rockflex.structure._ground import Springs
+from rockflex.structure._rocking import RockingProperties
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,28 +8,25 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
-from rockflex.models import (
-    CLOSED,
-    HEADER,
-    LIFT,
-    LINEAR,
-    SIDE,
-    Quantities,
-    RockingModel,
+from rockflex.engine.solution import Solution
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.models._element_states import plastic_stretches
+from rockflex.models._elements import CLOSED
+from rockflex.models._named_quantities import (
     element_moves,
     element_speeds,
     floor_quantities,
-    joined_quantities,
-    plastic_stretches,
     quantities,
-    quantities_at_states,
     rotation_by_side,
     rotation_rate_by_side,
     tracked_elements,
 )
-from rockflex.solve import Solution
+from rockflex.models._quantities import LIFT, LINEAR, Quantities, joined_quantities
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import HEADER, SIDE
+from rockflex.models._values_at_states import quantities_at_states
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 
 
 def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:

@@ -5,12 +5,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_magnitude, checked_positive
-from rockflex._errors import InputError
-from rockflex._values import Value
-from rockflex.modal import FloorModes
-from rockflex.models import RIGHT, BoucWen, Element, RockingModel
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_magnitude, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.values import Value
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._element import Element
+from rockflex.models._elements import RIGHT
+from rockflex.models._rocking_model import RockingModel
 from rockflex.response._quasi_static import (
     StaticElementState,
     element_at_start_of_path,
@@ -19,6 +21,7 @@ from rockflex.response._quasi_static import (
     start_moving,
     static_tension,
 )
+from rockflex.structure._analysis import FloorModes
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,20 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
-from rockflex.modal import RockingProperties, Springs
-from rockflex.models import (
-    CLOSED,
-    LEFT,
-    LEVEL,
-    RIGHT,
-    Element,
-    FrictionElement,
-    Pose,
-    arm_of_element,
-    elements_of,
-)
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.models._element import Element, FrictionElement
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of_element, elements_of
+from rockflex.models._rocking_model import LEVEL, Pose
 from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnSprings
+from rockflex.structure._ground import Springs
+from rockflex.structure._rocking import RockingProperties
 
 TOLERANCE = 1e-12  # relative: changes this close to each other happen at once, and at an end in the next part
 

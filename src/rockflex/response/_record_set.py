@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import is_one_of
-from rockflex._errors import InputError
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._shown import number_with_noun, shown
-from rockflex._units import KN
-from rockflex._values import Value
-from rockflex.modal import RockingProperties
-from rockflex.motion import GroundMotion, horizontal_pairs
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.foundation.units import KN
+from rockflex.foundation.values import Value
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._recordings import horizontal_pairs
 from rockflex.response._demands import DEMANDS, ONLY_COMPARED
 from rockflex.response._quasi_static import static_path
 from rockflex.response._response import Response, history_of
+from rockflex.structure._rocking import RockingProperties
 
 if TYPE_CHECKING:
     import pandas as pd

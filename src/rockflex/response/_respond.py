@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
-from rockflex.models import RockingModel, floor_accelerations
+from rockflex.engine.solution import Solution, Solutions
+from rockflex.foundation.arrays import Array
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._stored_energies import floor_accelerations
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._peaks import (
@@ -24,7 +26,6 @@ from rockflex.response._peaks import (
     largest_rotations,
 )
 from rockflex.response._response import PEAKS, Response
-from rockflex.solve import Solution, Solutions
 
 
 def response_of_solution(model: RockingModel, motion: str, solution: Solution, tracked: TrackedPeaks) -> Response:

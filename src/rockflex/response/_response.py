@@ -8,15 +8,15 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError, MissingQuantityError
-from rockflex._files import checked_file_path
-from rockflex._html import HtmlTable
-from rockflex._language import translated
-from rockflex._shown import number_with_noun, shown
-from rockflex._units import UnitSystem
-from rockflex._values import Value
-from rockflex.motion import GroundMotion
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.errors import InputError, MissingQuantityError
+from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import number_with_noun, shown
+from rockflex.foundation.units import UnitSystem
+from rockflex.foundation.values import Value
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History, SampledHistory

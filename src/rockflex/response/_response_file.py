@@ -10,40 +10,25 @@ from typing import Any, cast
 
 import numpy as np
 
-from rockflex._archives import ArchiveLimits, arrays_from_npz
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file, write_given_file
-from rockflex._registry import registered_objects
-from rockflex._shown import shown
-from rockflex.modal import (
-    BARS,
-    BaseElement,
-    FloorModes,
-    FrictionDamper,
-    RockingProperties,
-    Springs,
-    Tendon,
-    ViscousDamper,
-    YieldingDissipator,
-    YieldingStory,
-    element_parameters,
-)
-from rockflex.models import (
-    HEADER,
-    RISE,
-    BoucWen,
+from rockflex.foundation.archives import ArchiveLimits, arrays_from_npz
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file, write_given_file
+from rockflex.foundation.registry import registered_objects
+from rockflex.foundation.shown import shown
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
-    Pose,
     Restitution,
-    RockingModel,
     SidedRestitution,
-    SlidingModel,
-    SpringModel,
     VVELComplete,
     VVELSimplified,
 )
+from rockflex.models._rocking_model import Pose, RockingModel
+from rockflex.models._sliding import SlidingModel
+from rockflex.models._spring_model import SpringModel
+from rockflex.models._state_layout import HEADER, RISE
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._peaks import (
@@ -54,6 +39,12 @@ from rockflex.response._peaks import (
     element_peaks,
     extremes_about_pivots,
 )
+from rockflex.structure._analysis import FloorModes
+from rockflex.structure._attachment import YieldingStory, element_parameters
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._ground import Springs
+from rockflex.structure._law_bars import BARS
+from rockflex.structure._rocking import RockingProperties
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 

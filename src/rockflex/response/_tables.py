@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._checks import is_one_of
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 if TYPE_CHECKING:
     import pandas as pd

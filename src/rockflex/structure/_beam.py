@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import (
+from rockflex.foundation.checks import (
     MOST_MODES,
     checked_damping_ratios,
     checked_instance,
@@ -15,11 +15,10 @@ from rockflex._checks import (
     checked_whole_number,
     is_one_of,
 )
-from rockflex._errors import InputError
-from rockflex._overflow import explaining_overflow
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, ritz_modes
 from rockflex.structure._beam_sections import (
     Along,
@@ -30,6 +29,7 @@ from rockflex.structure._beam_sections import (
     lumped_masses_on_beam,
 )
 from rockflex.structure._cross_section import Section, checked_section, value_from_section
+from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_ELEMENTS = 1000

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, checked_positive, checked_whole_number
-from rockflex._errors import InputError
-from rockflex._overflow import explaining_overflow
-from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import MOST_MODES, checked_positive, checked_whole_number
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.values import Value
 from rockflex.structure._beam_sections import BeamSections
+from rockflex.structure._participation import MassNormalisedModes
 
 N_STATIONS = 21
 """Number of stations of a structure with distributed mass, including base and top."""

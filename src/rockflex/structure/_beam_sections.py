@@ -7,11 +7,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite_vector, checked_positive
-from rockflex._errors import InputError
-from rockflex._shown import number_with_noun
-from rockflex._values import Value
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite_vector, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import number_with_noun
+from rockflex.foundation.values import Value
 
 Along: TypeAlias = float | Callable[[Array], ArrayLike] | tuple[ArrayLike, ArrayLike]
 """A number, a function of heights (n,) that returns values (n,), or a table (heights, values) to interpolate."""

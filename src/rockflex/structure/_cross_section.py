@@ -5,11 +5,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Self
 
-from rockflex._checks import checked_finite, checked_positive
-from rockflex._errors import InputError
-from rockflex._overflow import explaining_overflow
-from rockflex._shown import shown
-from rockflex._values import Value
+from rockflex.foundation.checks import checked_finite, checked_positive
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 
 
 @dataclass(frozen=True, eq=False)

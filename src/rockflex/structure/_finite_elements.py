@@ -8,10 +8,10 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, diags_array
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigsh, splu
 
-from rockflex._arrays import Array
-from rockflex.modal import MassNormalisedModes
+from rockflex.foundation.arrays import Array
 from rockflex.structure._beam_modes import N_STATIONS, beam_forces_at_stations, beam_mesh_nodes, gauss_points
 from rockflex.structure._beam_sections import BeamSections
+from rockflex.structure._participation import MassNormalisedModes
 
 _MAX_RESIDUAL = 1e-6
 _MAX_SQUARES_RATIO = 1e6  # of ω² in one search: rounding in the lowest mode then leaves ten digits of the highest

@@ -8,8 +8,8 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import (
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import (
     MOST_STORIES,
     check_all_positive,
     checked_damping_ratios,
@@ -22,12 +22,14 @@ from rockflex._checks import (
     number_of_dimensions,
     real_or_nan,
 )
-from rockflex._errors import InputError
-from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
-from rockflex._overflow import explaining_overflow
-from rockflex._shown import shown
-from rockflex._values import Value, with_changed_fields
-from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.matrices import checked_heights, checked_mass, checked_stiffness
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value, with_changed_fields
+from rockflex.structure._analysis import ModalProperties, modal_properties
+from rockflex.structure._participation import rocking_properties
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure
 
 MIN_SAFE, MAX_SAFE = 1e-20, 1e20  # of numbers in SI units whose products certainly do not overflow

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._archives import ArchiveError, ArchiveLimits, arrays_from_npz
-from rockflex._arrays import Array, Bools
-from rockflex._checks import (
+from rockflex.foundation.archives import ArchiveError, ArchiveLimits, arrays_from_npz
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import (
     checked_damping_ratios,
     checked_finite_matrix,
     checked_finite_vector,
@@ -22,11 +22,11 @@ from rockflex._checks import (
     float_array,
     number_of_dimensions,
 )
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file, checked_file_path
-from rockflex._matrices import checked_mass, checked_stiffness
-from rockflex._overflow import explaining_overflow
-from rockflex.modal import MassNormalisedModes, excited_mode_indices
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file, checked_file_path
+from rockflex.foundation.matrices import checked_mass, checked_stiffness
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.structure._participation import MassNormalisedModes, excited_mode_indices
 from rockflex.structure._structure import ModalStructure
 
 if TYPE_CHECKING:

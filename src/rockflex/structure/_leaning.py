@@ -7,13 +7,14 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite_vector
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite_vector
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
+from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._frames import LumpedStructure
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure, ModifiedStructure, Structure, is_structure
 
 

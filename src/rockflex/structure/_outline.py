@@ -6,17 +6,11 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex.modal import (
-    BaseElement,
-    FrictionDamper,
-    ModalProperties,
-    RockingProperties,
-    Tendon,
-    ViscousDamper,
-    YieldingDissipator,
-)
+from rockflex.foundation.arrays import Array
+from rockflex.structure._analysis import ModalProperties
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import ModifiedStructure, Structure
 from rockflex.structure._towers import CantileverWithTipMass
 

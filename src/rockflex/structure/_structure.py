@@ -6,20 +6,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, Protocol, SupportsIndex
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_finite
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.modal import (
-    BaseElement,
-    MassNormalisedModes,
-    ModalProperties,
-    RockingProperties,
-    Tendon,
-    base_element_tuple,
-)
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_finite
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
+from rockflex.structure._analysis import ModalProperties
+from rockflex.structure._elements import BaseElement, Tendon, base_element_tuple
+from rockflex.structure._participation import MassNormalisedModes
+from rockflex.structure._rocking import RockingProperties
 
 MAX_PERIOD = 10.0  # s
 

@@ -8,18 +8,18 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_magnitude, checked_mode_count, checked_positive, is_one_of
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._overflow import explaining_overflow
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.modal import RockingProperties
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_magnitude, checked_mode_count, checked_positive, is_one_of
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._from_matrices import from_matrices
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _TOWER_ELEMENTS = 2000  # as in the paper

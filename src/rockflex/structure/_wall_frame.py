@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, checked_damping_ratios, checked_positive, checked_whole_number
-from rockflex._overflow import explaining_overflow
-from rockflex._values import Value
-from rockflex.modal import MassNormalisedModes
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import MOST_MODES, checked_damping_ratios, checked_positive, checked_whole_number
+from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.values import Value
 from rockflex.structure._beam_modes import N_STATIONS, beam_forces_at_stations, beam_mesh_nodes, gauss_points
+from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_PANELS, _N_POINTS = 64, 8

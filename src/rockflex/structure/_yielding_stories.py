@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex._values import Value
-from rockflex.modal import YieldingStory
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.foundation.values import Value
+from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._frames import LumpedStructure
 from rockflex.structure._leaning import Leaning, lumped_structure_of
 from rockflex.structure._structure import ModifiedStructure, Structure

@@ -2,4 +2,7 @@
 
 from rockflex.web._serve import make_app, serve
 
-__all__ = ["make_app", "serve"]
+__all__ = [
+    "make_app",
+    "serve",
+]

@@ -4,13 +4,14 @@ from contextlib import nullcontext
 from string import ascii_uppercase
 from typing import Any
 
-from rockflex._json import as_json_value
-from rockflex._units import UnitSystem
-from rockflex.models import parse_model
-from rockflex.project import Project
-from rockflex.report import write_report
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.units import UnitSystem
+from rockflex.models._label import parse_model
+from rockflex.report.project._project import Project
 from rockflex.report.run._comparison_page import demand_table
-from rockflex.study import MAX_ALTERNATIVES, PreparedCase
+from rockflex.report.run._report_page import write_report
+from rockflex.studies._compare import MAX_ALTERNATIVES
+from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import RUN_WORK_LIMIT, check_work_of_runs
 from rockflex.web._refusal import Refusal, errors_as_refusals, temporary_folder

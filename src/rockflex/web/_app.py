@@ -20,13 +20,13 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from rockflex._errors import InputError, SolverError
-from rockflex._json import as_json_value
-from rockflex._language import CATALOGUES, Language, use_language
-from rockflex._units import QUANTITIES, SystemName, UnitSystem
+from rockflex.engine.stops import RunStoppedError, stopping_when
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import CATALOGUES, Language, use_language
+from rockflex.foundation.units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
-from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.study import MAX_ALTERNATIVES
+from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
 from rockflex.web._connections import BoundedBodies
@@ -219,7 +219,7 @@ class PageServer:
 
     def _making(self, request: Request, make: Callable[[Progress], tuple[str, bytes]], state: PageState) -> Response:
         def styled(told: Progress) -> tuple[str, bytes]:
-            from rockflex.plot import figure_style
+            from rockflex.plot._figures import figure_style
 
             with figure_style(units=state.units, language=state.language):
                 return make(told)

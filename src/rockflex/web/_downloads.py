@@ -5,13 +5,16 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
-from rockflex._csv import table_as_csv
-from rockflex._language import translated
-from rockflex.kinds import KINDS
-from rockflex.motion import GroundMotion, Selection, record_csv
-from rockflex.report.run import run_report_as_html
+from rockflex.foundation.csv import table_as_csv
+from rockflex.foundation.language import translated
+from rockflex.motion._columns import record_csv
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._suite import Selection
 from rockflex.report.run._report_files import page_as_pdf
-from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
+from rockflex.report.run._report_page import run_report_as_html
+from rockflex.response._response import Response
+from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, history_columns
+from rockflex.studies._study_kind import KINDS
 from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._folders import records_as_zip
@@ -73,8 +76,8 @@ def animation_file(state: PageState, uploads: UploadedRecords, progress: Progres
 
     `progress` is called with the number of frames drawn and that of all.
     """
-    from rockflex.plot import animate
     from rockflex.plot._figures import literal_text
+    from rockflex.plot.animation._animate import animate
 
     built, motion, found = simulate_state_models(state, uploads)
     seconds = max(response.end_time for response in found)
@@ -148,7 +151,8 @@ def _printed(what: str, name: str, content: bytes) -> tuple[str, bytes]:
 
 
 def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_history
+    from rockflex.plot._figures import figure_as_svg
+    from rockflex.plot._history import plot_history
 
     return "response.svg", figure_as_svg(plot_history(simulate_state_models(state, uploads)[2]))
 
@@ -201,7 +205,8 @@ def _selection(state: PageState, uploads: UploadedRecords) -> Selection:
 
 
 def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    from rockflex.plot import figure_as_svg, plot_selection
+    from rockflex.plot._figures import figure_as_svg
+    from rockflex.plot._motion import plot_selection
 
     return "selection.svg", figure_as_svg(plot_selection(_selection(state, uploads)))
 
@@ -255,7 +260,7 @@ def study_file_maker(
         return f"{page.table_name}.csv", table_as_csv(page.table(job, state), lineterminator=None).encode()
 
     def figure(_: Progress) -> tuple[str, bytes]:
-        from rockflex.plot import figure_as_svg
+        from rockflex.plot._figures import figure_as_svg
 
         with errors_as_refusals(""):
             return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()

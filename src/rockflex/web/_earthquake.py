@@ -7,24 +7,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockflex._json import as_json_value
-from rockflex.motion import (
-    MEASURES,
-    GroundMotion,
-    IntensityMeasure,
-    MeasureInput,
-    Suite,
+from rockflex.foundation.json import as_json_value
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._measures import MEASURES, IntensityMeasure, MeasureInput, record_measures, vertical_measures
+from rockflex.motion._pulses import (
     half_sine_pulse,
-    load_suite,
     mavroeidis_papageorgiou_pulse,
     one_cosine_pulse,
     one_sine_pulse,
-    record_measures,
     rectangular_pulse,
     ricker_pulse,
-    suite_names,
-    vertical_measures,
 )
+from rockflex.motion._suite import Suite, load_suite, suite_names
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState, PulseChoice, RecordChoice

@@ -5,7 +5,7 @@ import base64
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 
 
 def pack_array_as_base64(values: ArrayLike) -> str:

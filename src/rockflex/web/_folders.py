@@ -9,13 +9,16 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
 
-from rockflex._archives import ArchiveError, ArchiveLimits, open_archive
-from rockflex._errors import InputError, RecordWarning
-from rockflex._json import as_json_value
-from rockflex._language import translated
-from rockflex._shown import first_texts_shown
-from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
+from rockflex.foundation.archives import ArchiveError, ArchiveLimits, open_archive
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import first_texts_shown
+from rockflex.motion._columns import record_csv
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import unique_record_names
+from rockflex.motion._suite import Suite
+from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_without_obspy
 from rockflex.web._limits import (
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,

@@ -8,21 +8,19 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._json import as_json_value
-from rockflex.modal import PLACE
+from rockflex.foundation.json import as_json_value
+from rockflex.structure._attachment import PLACE
 from rockflex.structure._outline import SYMBOLS
-from rockflex.structure.file import (
-    ELEMENTS,
-    KINDS,
-    PartTable,
-    StructureEntry,
+from rockflex.structure.file._structure_entry import ELEMENTS, KINDS, StructureEntry
+from rockflex.structure.file._structure_tables import PartTable
+from rockflex.structure.file._toml_table import (
     TomlTable,
     first_table_in_annotation,
     members_of_annotation,
     schema_key_of_field,
 )
-from rockflex.study._ground_tables import GroundTable
-from rockflex.study.spec import BoucWenTable
+from rockflex.studies._ground_tables import GroundTable
+from rockflex.studies.spec import BoucWenTable
 
 
 def _preset_frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:

@@ -8,9 +8,9 @@ from threading import Condition, Event, Thread
 from time import monotonic
 from typing import Any, Generic, TypeVar
 
-from rockflex._errors import InputError, SolverError
-from rockflex.solve import RunStoppedError, check_interruption, stopping_when
-from rockflex.study import ChunkedPlan
+from rockflex.engine.stops import RunStoppedError, check_interruption, stopping_when
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.studies._plan import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 MAX_STUDIES = 40  # studies that are remembered

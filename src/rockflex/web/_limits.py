@@ -6,26 +6,25 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._schema import SchemaKey
-from rockflex._shown import number_with_noun
-from rockflex.modal import RockingProperties
-from rockflex.models import parse_model
-from rockflex.motion import GroundMotion
-from rockflex.solve import Task
-from rockflex.structure.file import (
-    ELEMENTS,
-    ElementTable,
+from rockflex.foundation.schema import SchemaKey
+from rockflex.foundation.shown import number_with_noun
+from rockflex.models._label import parse_model
+from rockflex.models._work import Task
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure.file._structure_entry import ELEMENTS, ElementTable
+from rockflex.structure.file._toml_table import (
     TomlTable,
     first_table_in_annotation,
     members_of_annotation,
     schema_key_of_field,
     valid_value_description,
 )
-from rockflex.study import PreparedCase
+from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 if TYPE_CHECKING:
-    from rockflex.study.cloud import CloudPlan
+    from rockflex.studies.cloud import CloudPlan
 
 MAX_FILE_BYTES = 5_000_000  # bytes of an upload
 MAX_BODY_BYTES = 6_000_000  # bytes of any request, except one with a folder
@@ -41,7 +40,7 @@ MAX_FOLDER_SAMPLES = 8_000_000  # of the records of a folder
 MAX_CACHED_SAMPLES = 30_000_000  # of all folders in memory, 240 MB
 MAX_MODELS = 4  # at once
 MAX_STUDY_RUNS = 20_000  # of a study
-MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.CostModel`)
+MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`CostModel`)
 RUN_WORK_LIMIT = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
 MAX_RUN_STATES = 500_000  # time steps of a run whose history is kept, free vibration included: some 500 MB of curves
 MAX_ANSWER_COST = 3.0  # s of estimated computing time of the runs of one answer

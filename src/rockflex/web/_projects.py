@@ -4,12 +4,12 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rockflex._archives import ArchiveLimits, archive_bytes
-from rockflex._errors import InputError
-from rockflex._json import as_json_value
-from rockflex.motion import GroundMotion
-from rockflex.project._archive import unpacked_members
-from rockflex.project._project_file import (
+from rockflex.foundation.archives import ArchiveLimits, archive_bytes
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import as_json_value
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.report.project._archive import unpacked_members
+from rockflex.report.project._project_file import (
     PAGE,
     ProjectDocument,
     RecordRow,

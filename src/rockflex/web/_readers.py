@@ -17,10 +17,10 @@ from threading import Event, Lock, Thread
 from time import monotonic
 from typing import Any, BinaryIO
 
-from rockflex._errors import InputError
-from rockflex._language import Language, use_language
-from rockflex._processes import ProcessWithFolder
-from rockflex.solve import RunStoppedError, asked_to_stop
+from rockflex.engine.stops import RunStoppedError, asked_to_stop
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import Language, use_language
+from rockflex.foundation.processes import ProcessWithFolder
 from rockflex.web._refusal import Refusal
 
 MAX_SECONDS = 5.0  # to read a file

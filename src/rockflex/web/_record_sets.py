@@ -5,15 +5,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockflex._json import as_json_value
-from rockflex._language import translated
-from rockflex._units import UnitSystem
-from rockflex.models import parse_model
-from rockflex.motion import GroundMotion
-from rockflex.report.run import run_report_as_html
-from rockflex.response import DEMANDS, DEMANDS_BY_RECORD, RecordSet, Response, check, checked_rule
-from rockflex.solve import check_interruption
-from rockflex.study import PreparedCase
+from rockflex.engine.stops import check_interruption
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
+from rockflex.foundation.units import UnitSystem
+from rockflex.models._label import parse_model
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.report.run._report_page import run_report_as_html
+from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
+from rockflex.response._limit_checks import check
+from rockflex.response._record_set import RecordSet, checked_rule
+from rockflex.response._response import Response
+from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._jobs import RunsJob
 from rockflex.web._limits import check_size_of_set
@@ -137,7 +140,7 @@ def _rotation_curve(run: Response) -> dict[str, str]:
 
 
 def _record_set_figure(job: RecordSetJob, state: PageState) -> Any:
-    from rockflex.plot import plot_set
+    from rockflex.plot._record_set import plot_set
 
     return plot_set(_set_of_job(job, state))
 

@@ -6,7 +6,7 @@ from errno import EDQUOT, ENOSPC
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from rockflex._errors import InputError, SolverError
+from rockflex.foundation.errors import InputError, SolverError
 
 DISK_FULL = "The server's disk is full. Try again later, or tell whoever runs the server."
 NOT_STORED = "the server could not store the file temporarily. Try again."

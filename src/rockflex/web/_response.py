@@ -7,25 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._json import as_json_value
-from rockflex._units import UnitSystem
-from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
-from rockflex.models import parse_model
-from rockflex.motion import GroundMotion
-from rockflex.response import (
-    NO_LIMIT,
-    History,
-    RecordSet,
-    Response,
-    check,
-    check_in_units,
-    warnings_of_energy,
-    warnings_of_response,
-)
-from rockflex.solve import cost_model_of
-from rockflex.study import PreparedCase
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.units import UnitSystem
+from rockflex.models._label import parse_model
+from rockflex.models._work import cost_model_of
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.response._history import History
+from rockflex.response._limit_checks import NO_LIMIT, check, check_in_units
+from rockflex.response._record_set import RecordSet
+from rockflex.response._response import Response, warnings_of_energy, warnings_of_response
+from rockflex.structure._elements import Tendon, YieldingDissipator
+from rockflex.structure._rocking import RockingProperties
+from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._limits import check_work_of_runs
@@ -90,7 +85,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
 CURVES = ("rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement")
-MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.CostModel`
+MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `CostModel`
 
 
 def simulate_state_models(

@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from rockflex.fragility import NOMINAL, ROCKING
-from rockflex.modal import BaseElement, element_parameters
-from rockflex.structure import LumpedMasses, Section
-from rockflex.structure.file import StructureEntry
-from rockflex.study import yielding_model_labels
-from rockflex.study._ground_tables import GroundTable, SpringBedTable, SpringsTable
-from rockflex.study.cloud import CloudStudy
-from rockflex.study.design import DesignStudy
+from rockflex.fragility._limit_states import NOMINAL, ROCKING
+from rockflex.structure._attachment import element_parameters
+from rockflex.structure._beam_sections import LumpedMasses
+from rockflex.structure._cross_section import Section
+from rockflex.structure._elements import BaseElement
+from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
+from rockflex.studies._prepared_case import yielding_model_labels
+from rockflex.studies.cloud import CloudStudy
+from rockflex.studies.design._design_study import DesignStudy
 from rockflex.web._earthquake import PULSES
 from rockflex.web._selection import (
     RECORDS_FOLDER,

@@ -11,23 +11,16 @@ from typing import Any
 import numpy as np
 from pydantic import PrivateAttr
 
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, RecordWarning
-from rockflex._json import as_json_value
-from rockflex.motion import (
-    GroundMotion,
-    Selection,
-    Suite,
-    TargetSpectrum,
-    asce7_site_spectrum,
-    asce7_spectrum,
-    ec8_second_spectrum,
-    ec8_spectrum,
-    load_suite,
-    read_target,
-)
-from rockflex.solve import check_interruption
-from rockflex.study import Records
+from rockflex.engine.stops import check_interruption
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError, RecordWarning
+from rockflex.foundation.json import as_json_value
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._spectra import TargetSpectrum
+from rockflex.motion._suite import Selection, Suite, load_suite
+from rockflex.motion._target_files import read_target
+from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum
+from rockflex.studies.spec import Records
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import unclear_commas_text
 from rockflex.web._refusal import Refusal, errors_as_refusals

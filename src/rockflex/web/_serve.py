@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from rockflex._checks import checked_whole_number
-from rockflex._errors import InputError
+from rockflex.foundation.checks import checked_whole_number
+from rockflex.foundation.errors import InputError
 from rockflex.web._hosts import page_address
 
 if TYPE_CHECKING:

@@ -10,17 +10,28 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 
-from rockflex._errors import InputError
-from rockflex._language import Language
-from rockflex._units import SystemName
-from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
-from rockflex.modal import Ground
-from rockflex.motion import Combination, IntensityMeasure, scalable_measures
-from rockflex.response import CheckLimits
-from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
-from rockflex.study import MAX_ALTERNATIVES, RunOptions, yielding_model_labels
-from rockflex.study._ground_tables import GroundTable
-from rockflex.study.spec import BoucWenTable, RunOptionKeys
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import Language
+from rockflex.foundation.units import SystemName
+from rockflex.fragility._limit_states import (
+    LIMIT_STATES,
+    NOMINAL,
+    OVERTURNING,
+    ROCKED,
+    ROCKING,
+    LimitState,
+    rotation_limit_state,
+)
+from rockflex.motion._measures import IntensityMeasure, scalable_measures
+from rockflex.motion._recordings import Combination
+from rockflex.response._limit_checks import CheckLimits
+from rockflex.structure._ground import Ground
+from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.structure.file._toml_table import TomlTable, toml_problem_place
+from rockflex.studies._compare import MAX_ALTERNATIVES
+from rockflex.studies._ground_tables import GroundTable
+from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
+from rockflex.studies.spec import BoucWenTable, RunOptionKeys
 from rockflex.web._limits import (
     MAX_MODELS,
     RUN_WORK_LIMIT,

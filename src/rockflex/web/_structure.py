@@ -9,17 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._errors import InputError
-from rockflex._json import as_json_value
-from rockflex._language import translated
-from rockflex.modal import PLACE, Ground, Pivot, RockingProperties, adequacy, uplifted_modes
-from rockflex.solve import check_interruption
-from rockflex.structure import structure_warnings
+from rockflex.engine.stops import check_interruption
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
+from rockflex.structure._adequacy import adequacy
+from rockflex.structure._attachment import PLACE
 from rockflex.structure._from_matrices import DegreesOfFreedom
+from rockflex.structure._ground import Ground
 from rockflex.structure._outline import StructureOutline, structure_outline
-from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
-from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
-from rockflex.study._ground_tables import GroundTable
+from rockflex.structure._pivot import Pivot
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._structure import Structure, structure_warnings
+from rockflex.structure._uplifted import uplifted_modes
+from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.structure.file._structure_tables import MatricesTable, ModesTable, StructureTable
+from rockflex.structure.file._toml_table import TomlTable
+from rockflex.studies._ground_tables import GroundTable
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most

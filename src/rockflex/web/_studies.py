@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
-from rockflex import fragility
-from rockflex._arrays import Array
-from rockflex._errors import InputError, SolverError
-from rockflex._json import as_json_value
-from rockflex._language import translated
-from rockflex.kinds import KINDS
-from rockflex.motion import MEASURES
-from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
-from rockflex.study.cloud import CloudPlan, CloudStudy
-from rockflex.study.design import DesignStudy, design_table, smallest_width
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
+from rockflex.fragility._clouds import CloudFits, fit_each_cloud, recordings_of_runs
+from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKING, observed_exceedance_fractions
+from rockflex.fragility._outcomes import fit_outcomes
+from rockflex.motion._measures import MEASURES
+from rockflex.studies._prepared_case import yielding_model_labels
+from rockflex.studies._result_tables import count_pivot_lifts, tables_to_dataframe
+from rockflex.studies._study_kind import KINDS
+from rockflex.studies.cloud import CloudPlan, CloudStudy
+from rockflex.studies.design._design_study import DesignStudy
+from rockflex.studies.design._design_table import design_table, smallest_width
 from rockflex.web._jobs import RunsJob, StudyJob
 from rockflex.web._limits import MAX_RUN_COST, check_size_of_study
 from rockflex.web._refusal import Refusal, errors_as_refusals
@@ -167,7 +171,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
         view["notes"].append(translated("All runs so far have the same intensity."))
         return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
-    fits, reasons = fragility.fit_each_cloud(solved, choice.measure, nominal=choice.limit == fragility.NOMINAL.name)
+    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
@@ -176,7 +180,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
 
 
 def _fragility_curve_view(
-    fit: fragility.CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
+    fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
 ) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
     over = limit_state_of_choice(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
@@ -188,7 +192,7 @@ def _fragility_curve_view(
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": fragility.observed_exceedance_fractions(im, over, OBSERVED_BINS),
+        "observed": observed_exceedance_fractions(im, over, OBSERVED_BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -198,17 +202,15 @@ def _fragility_curve_view(
     if choice.limit == ROTATION:
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
-            fallen = fragility.OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-            turned = fragility.fit_outcomes(im, rotation, fallen, fragility.recordings_of_runs(part)).curve(
-                choice.rotation
-            )
+            fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+            turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
             found["p"] = turned.probability(grid)
             found["median"] = _interpolated_fragility_median(grid, found["p"])
             found["low"], found["high"] = turned.band(grid, choice.confidence)
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == fragility.ROCKING.name else fit.outcomes.overturning
+    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
     low, high = curve.band(grid, choice.confidence)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
@@ -232,12 +234,10 @@ def _cloud_table(job: StudyJob, _: PageState) -> "pd.DataFrame":
 
 
 def _cloud_figure(job: StudyJob, state: PageState) -> Any:
-    from rockflex.plot import plot_fragility
+    from rockflex.plot._fragility import plot_fragility
 
     choice = state.cloud
-    fits, reasons = fragility.fit_each_cloud(
-        some_runs_of_study_job(job), choice.measure, nominal=choice.limit == fragility.NOMINAL.name
-    )
+    fits, reasons = fit_each_cloud(some_runs_of_study_job(job), choice.measure, nominal=choice.limit == NOMINAL.name)
     if not fits:
         reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
         raise Refusal(f"There is no curve to draw. {reason}")
@@ -316,7 +316,7 @@ def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
 
 
 def _design_figure(job: StudyJob, state: PageState) -> Any:
-    from rockflex.plot import plot_design
+    from rockflex.plot._design import plot_design
 
     return plot_design(_design_table(job, state), state.design.target)
 

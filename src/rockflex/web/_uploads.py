@@ -12,13 +12,10 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from rockflex._archives import ArchiveLimits, array_from_npy, npy_shape_and_type, open_archive
-from rockflex._errors import InputError
-from rockflex.motion import (
-    GroundMotion,
-    is_vertical_component,
-    read_motion_without_obspy,
-)
+from rockflex.foundation.archives import ArchiveLimits, array_from_npy, npy_shape_and_type, open_archive
+from rockflex.foundation.errors import InputError
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._readers import read_motion_without_obspy
 from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile, read_record_folder, unpacked_record_files
 from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
 from rockflex.web._refusal import Refusal, errors_as_refusals, temporary_folder

@@ -4,8 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rockflex.kinds import StudyKind
-from rockflex.study import CrossPlan, StructuresStudySpec
+from rockflex.studies import CrossPlan, StructuresStudySpec, StudyKind
 
 
 class BothWaysStudy(StructuresStudySpec):

@@ -6,34 +6,9 @@ Dyn, doi 10.1002/eqe.4193. A target is a table or a figure: a title, and a funct
 the rules by which a number passes.
 
 The package also holds what the library has only for this paper: the random `population` and the equivalents of the two
-tested specimens.
+tested specimens. Names are imported when they are first used.
 """
 
-from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
-from rockflex.papers.silva_stojadinovic_2024._inputs import SEED, SEEDS, PaperRecords, Piece
-from rockflex.papers.silva_stojadinovic_2024._targets import (
-    TARGETS,
-    finish_target,
-    reproduce_targets,
-    target_cost,
-    target_pieces,
-    target_title,
-)
+import lazy_loader as lazy
 
-__all__ = [
-    "SEED",
-    "SEEDS",
-    "TARGETS",
-    "PaperRecords",
-    "Piece",
-    "RemarkKind",
-    "Verdict",
-    "equivalent_2hz_long_base",
-    "equivalent_s1",
-    "finish_target",
-    "reproduce_targets",
-    "target_cost",
-    "target_pieces",
-    "target_title",
-]
+__getattr__, __dir__, __all__ = lazy.attach_stub(__name__, __file__)

@@ -28,9 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex._arrays import Array
-from rockflex.report import ConstructionCheck, PublishedNumber
-from rockflex.report._document import decimal_text
+from rockflex.foundation.arrays import Array
+from rockflex.report._document import ConstructionCheck, PublishedNumber, decimal_text
 
 MAX_INTERVAL_WIDTH = 0.5  # over the printed value, above which the interval decides nothing
 APPROXIMATE = 0.2  # largest relative difference from a value that is printed as "about" so much

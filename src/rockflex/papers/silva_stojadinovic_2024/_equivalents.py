@@ -10,12 +10,13 @@ from functools import lru_cache
 import numpy as np
 from scipy.optimize import brentq, root
 
-from rockflex._arrays import Array
-from rockflex._checks import checked_damping_ratios, checked_in_range, checked_positive, checked_whole_number
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex.modal import RockingProperties, modal_properties
-from rockflex.structure import LumpedStructure
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_damping_ratios, checked_in_range, checked_positive, checked_whole_number
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.structure._analysis import modal_properties
+from rockflex.structure._frames import LumpedStructure
+from rockflex.structure._rocking import RockingProperties
 
 _SPACING = (1.25, 1.7)  # outside, positive masses barely meet both ratios of S1, or do not exist
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
+from rockflex.foundation.arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024.population._statistics import PairTerms, has_status, outcome_rows
 
 if TYPE_CHECKING:

@@ -8,12 +8,11 @@ from typing import Any, Literal
 import numpy as np
 
 import rockflex as rf
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
-from rockflex.report import ConstructionCheck, PublishedNumber, Remark, ReproducedResult
-from rockflex.report._document import decimal_text
+from rockflex.report._document import ConstructionCheck, PublishedNumber, Remark, ReproducedResult, decimal_text
 
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rockflex as rf
-from rockflex._arrays import Array, Bools
+from rockflex.foundation.arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval, bootstrap_intervals
 from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, Piece, table_1_frame
-from rockflex.report import PublishedNumber, Remark, ReproducedResult
+from rockflex.report._document import PublishedNumber, Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd

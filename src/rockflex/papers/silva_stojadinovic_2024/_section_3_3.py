@@ -11,7 +11,7 @@ from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords, Piece
 from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
-from rockflex.report import Remark, ReproducedResult
+from rockflex.report._document import Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd

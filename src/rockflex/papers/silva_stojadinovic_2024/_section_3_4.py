@@ -6,10 +6,10 @@ from functools import lru_cache
 import numpy as np
 
 import rockflex as rf
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._inputs import BEHAVIOURS, MARK, PaperRecords, table_1_frame, tall_frame
-from rockflex.report import PublishedNumber, ReproducedResult
+from rockflex.report._document import PublishedNumber, ReproducedResult
 
 TABLE_2 = "Formulas of the eight parameters of 2DOF-S"
 GRAVITY = 9.81

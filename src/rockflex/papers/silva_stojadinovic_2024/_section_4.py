@@ -7,11 +7,11 @@ from functools import partial
 import numpy as np
 
 import rockflex as rf
-from rockflex._arrays import Array
+from rockflex.foundation.arrays import Array
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, printed_range
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, PaperRecords, table_1_frame
-from rockflex.report import PublishedNumber, Remark, ReproducedResult
+from rockflex.report._document import PublishedNumber, Remark, ReproducedResult
 
 FIGURE_14 = "Geometry of the chimney, I_θ, L_0^r and M_r"
 FUNCTIONS = 5  # of Eq. 36

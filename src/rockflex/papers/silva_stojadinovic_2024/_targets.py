@@ -8,7 +8,7 @@ from typing import NamedTuple
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import _section_3_1, _section_3_2, _section_3_3, _section_3_4, _section_4
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords, Piece
-from rockflex.report import FinishedResult, ReproducedResult
+from rockflex.report._document import FinishedResult, ReproducedResult
 
 
 class _Target(NamedTuple):

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockflex._checks import checked_positive, checked_whole_number
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.checks import checked_positive, checked_whole_number
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.plot._history import ResponseCurve, default_panels, panel_quantities, response_curves
 from rockflex.plot.animation._files import GIF, MP4, animation_path_and_suffix, write_gif, write_video
 from rockflex.plot.animation._poses import default_amplification, frame_timing, outline_of_response, structure_poses
 from rockflex.plot.animation._scene import AnimatedFigure
-from rockflex.response import Response
-from rockflex.study.progress import ProgressChoice, reporting_progress
+from rockflex.response._response import Response
+from rockflex.studies.progress import ProgressChoice, reporting_progress
 
 MIN_WIDTH, MAX_WIDTH = 320, 3840  # pixels
 MAX_RESPONSES = 6

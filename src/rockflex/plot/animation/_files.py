@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 from scipy.spatial import KDTree
 
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path, writing_atomically
-from rockflex._shown import shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path, writing_atomically
+from rockflex.foundation.shown import shown
 from rockflex.plot.animation._poses import FrameTiming
 from rockflex.plot.animation._scene import AnimatedFigure, Picture
 

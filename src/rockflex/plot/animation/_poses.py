@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_finite, checked_positive, real_or_nan
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.modal import RockingProperties
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_finite, checked_positive, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.plot._history import ResponseCurve, time_axis_limits
-from rockflex.response import History
+from rockflex.response._history import History
 from rockflex.structure._outline import BODY, GROUND, StructureOutline, structure_outline
+from rockflex.structure._rocking import RockingProperties
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}

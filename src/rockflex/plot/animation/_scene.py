@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
-from rockflex._language import translated
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve

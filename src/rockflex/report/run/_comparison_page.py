@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from rockflex._language import translated
-from rockflex._shown import shortened
-from rockflex._units import UnitSystem
-from rockflex.modal import RockingProperties
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import shortened
+from rockflex.foundation.units import UnitSystem
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
@@ -26,7 +25,10 @@ from rockflex.report.run._sheet import (
     first_warnings,
     line_count_of_text,
 )
-from rockflex.response import DEMANDS, STATISTICS, Comparison, History
+from rockflex.response._comparison import STATISTICS, Comparison
+from rockflex.response._demands import DEMANDS
+from rockflex.response._history import History
+from rockflex.structure._rocking import RockingProperties
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
 _OUTLINES = 48.0  # height in mm of the structures
@@ -69,7 +71,7 @@ class ComparisonPage(OneSheet):
 
 def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSystem) -> tuple[ComparisonPage, Figures]:
     """Return the page of a comparison, and its figures."""
-    from rockflex.plot import draw_alternatives
+    from rockflex.plot._comparison import draw_alternatives
 
     report = reported_alternatives(comparison, units)
     record = _report_tables.reported_record(report)

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockflex._language import translated
-from rockflex._units import UnitSystem
+from rockflex.foundation.language import translated
+from rockflex.foundation.units import UnitSystem
 from rockflex.report.run._report_tables import ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import Response
-from rockflex.structure import Section, TaperedTower
+from rockflex.response._response import Response
+from rockflex.structure._cross_section import Section
+from rockflex.structure._towers import TaperedTower
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockflex._errors import InputError
-from rockflex._language import chosen_language, translated
-from rockflex._processes import ProcessWithFolder
-from rockflex._shown import shortened
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import chosen_language, translated
+from rockflex.foundation.processes import ProcessWithFolder
+from rockflex.foundation.shown import shortened
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 from rockflex.report.run._sheet import Drawing, ReportPage
 

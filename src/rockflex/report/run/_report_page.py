@@ -6,12 +6,12 @@ from datetime import date as Date  # noqa: N812
 from pathlib import Path
 from typing import Any
 
-from rockflex._errors import InputError
-from rockflex._files import checked_file_path, write_given_file
-from rockflex._language import Language, chosen_language, use_language
-from rockflex._shown import shown
-from rockflex._units import Decimal, SystemName, checked_unit_system, with_decimal_commas
-from rockflex.motion import GroundMotion
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import checked_file_path, write_given_file
+from rockflex.foundation.language import Language, chosen_language, use_language
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import Decimal, SystemName, checked_unit_system, with_decimal_commas
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._comparison_page import comparison_page
 from rockflex.report.run._report_appendix import ReportAppendix
 from rockflex.report.run._report_files import chromium, page_as_pdf, report_as_word, word_module
@@ -19,7 +19,10 @@ from rockflex.report.run._report_tables import ReportCell, ReportedRecord, Repor
 from rockflex.report.run._run_page import run_page
 from rockflex.report.run._set_page import set_page
 from rockflex.report.run._sheet import Figures, ReportPage, checked_report_texts, page_as_html
-from rockflex.response import CheckLimits, Comparison, RecordSet, Response
+from rockflex.response._comparison import Comparison
+from rockflex.response._limit_checks import CheckLimits
+from rockflex.response._record_set import RecordSet
+from rockflex.response._response import Response
 
 SUFFIXES = (".html", ".htm", ".pdf", ".docx")
 _AS_GIVEN = {"title", "texts", "versions", "inputs"}  # parts of a page that keep their decimal points
@@ -130,7 +133,7 @@ def write_report(
     with use_language(language, decimal):
         page, figures = _page_of_report(responses, units=units, **given, appendix=appendix, limits=limits)
         if target.suffix.lower() == ".docx":
-            from rockflex.plot import figure_as_png
+            from rockflex.plot._figures import figure_as_png
 
             drawings = {stem: (label, figure_as_png(figure)) for stem, (label, figure) in figures.items()}
             content = report_as_word(page, drawings)
@@ -166,7 +169,7 @@ def _page_of_report(
     **options: Any,
 ) -> tuple[ReportPage, Figures]:
     """Return the contents of a report, and its figures; `options` are those of its kind."""
-    from rockflex.plot import figures_in_units
+    from rockflex.plot._figures import figures_in_units
 
     texts = checked_report_texts(title, date, notes, project, author, checker)
     system = checked_unit_system(units)

@@ -9,29 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
-from rockflex._errors import InputError, SolverError
-from rockflex._language import translated
-from rockflex._number_format import rounded_number
-from rockflex._shown import shown
-from rockflex._units import Unit, UnitSystem, named_unit
-from rockflex.modal import (
-    PLACE,
-    BaseElement,
-    ElementLaw,
-    FrictionDamper,
-    RockingProperties,
-    Tendon,
-    UpliftedModes,
-    ViscousDamper,
-    YieldingStory,
-    element_parameters,
-    uplifted_modes,
-)
-from rockflex.models import Restitution, SidedRestitution, VVELComplete, VVELSimplified
-from rockflex.motion import GroundMotion
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import rounded_number
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import Unit, UnitSystem, named_unit
+from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import History, Response
+from rockflex.response._history import History
+from rockflex.response._response import Response
+from rockflex.structure._attachment import PLACE, YieldingStory, element_parameters
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._uplifted import UpliftedModes, uplifted_modes
 
 MAX_MODES = 4  # modes
 _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex._units import UnitSystem
-from rockflex.modal import RockingProperties
-from rockflex.motion import GroundMotion
-from rockflex.response import History, Response, history_of
-from rockflex.structure import structure_warnings
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import UnitSystem
+from rockflex.motion._ground_motion import GroundMotion
+from rockflex.response._history import History
+from rockflex.response._response import Response, history_of
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._structure import structure_warnings
 
 MAX_RUNS = 6  # runs, for which a page has room
 _HOW = 'Give what simulate(..., output="history") returned, or several of these.'

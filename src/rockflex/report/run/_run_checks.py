@@ -5,10 +5,10 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from rockflex._errors import InputError, SolverError
-from rockflex._language import translated
-from rockflex._number_format import rounded_number
-from rockflex._units import UnitSystem
+from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import rounded_number
+from rockflex.foundation.units import UnitSystem
 from rockflex.report.run._report_tables import (
     ReportCell,
     ReportTable,
@@ -18,7 +18,10 @@ from rockflex.report.run._report_tables import (
     value_cell,
 )
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response, check_in_units
+from rockflex.response._friction import IMPACT_WINDOW
+from rockflex.response._history import History
+from rockflex.response._limit_checks import NO_LIMIT, Check, CheckTable, check_in_units
+from rockflex.response._response import BALANCED, Response
 
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad

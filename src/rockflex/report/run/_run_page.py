@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rockflex._errors import InputError
-from rockflex._language import translated
-from rockflex._shown import shortened
-from rockflex._units import UnitSystem
-from rockflex.motion import GroundMotion
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import shortened
+from rockflex.foundation.units import UnitSystem
+from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_appendix import ReportAppendix, report_appendix
 from rockflex.report.run._report_tables import ReportedRecord, ReportFact, ReportTable
@@ -32,8 +32,10 @@ from rockflex.report.run._sheet import (
     line_count_of_table,
     line_count_of_text,
 )
-from rockflex.response import CheckLimits, Response, check, friction_coefficient, warnings_of_response, warnings_of_run
-from rockflex.structure import structure_warnings
+from rockflex.response._friction import friction_coefficient
+from rockflex.response._limit_checks import CheckLimits, check
+from rockflex.response._response import Response, warnings_of_response, warnings_of_run
+from rockflex.structure._structure import structure_warnings
 
 _FEW = 4  # elements, whose loops are readable in half a sheet
 
@@ -127,7 +129,7 @@ def run_page(
 
 def figures_of_runs(page: OneSheet, record: ReportedRecord, report: ReportedRuns) -> dict[str, tuple[str, Any]]:
     """Return the figures of the record and of the runs."""
-    from rockflex.plot import draw_record_strip, draw_run_sheet
+    from rockflex.plot._run_sheet import draw_record_strip, draw_run_sheet
 
     strip = draw_record_strip(record.time, record.acceleration, width=STRIP[0], height=STRIP[1])
     sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
@@ -138,7 +140,7 @@ def figures_of_runs(page: OneSheet, record: ReportedRecord, report: ReportedRuns
 
 
 def _figures_of_appendix(page: RunPage, report: ReportedRuns) -> dict[str, tuple[str, Any]]:
-    from rockflex.plot import plot_loops
+    from rockflex.plot._loops import plot_loops
 
     size: Any = "page" if len(report.properties.elements) > _FEW else (7.2, 4.2)  # of which a sheet has room for two
     return {

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from rockflex._language import translated
-from rockflex._shown import shortened
-from rockflex._units import UnitSystem
+from rockflex.foundation.language import translated
+from rockflex.foundation.shown import shortened
+from rockflex.foundation.units import UnitSystem
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import (
     DAGGER,
@@ -19,8 +19,10 @@ from rockflex.report.run._report_tables import (
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
-from rockflex.response import DEMANDS, DEMANDS_BY_RECORD, CheckLimits, RecordSet, check
-from rockflex.structure import structure_warnings
+from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
+from rockflex.response._limit_checks import CheckLimits, check
+from rockflex.response._record_set import RecordSet
+from rockflex.structure._structure import structure_warnings
 
 STATISTIC_HEADS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
 
@@ -65,7 +67,7 @@ def set_page(
     limits: CheckLimits | None = None,
 ) -> tuple[SetPage, Figures]:
     """Return the page of a set of records, and its figure."""
-    from rockflex.plot import plot_set
+    from rockflex.plot._record_set import plot_set
 
     first = checked_reported_runs(found.responses[0], structure, None, units)
     known = found.properties if structure is None else structure

@@ -9,10 +9,10 @@ from datetime import date as Date  # noqa: N812
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
-from rockflex._errors import InputError
-from rockflex._language import chosen_language, translated
-from rockflex._shown import shortened, shown
-from rockflex._versions import package_versions
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import chosen_language, translated
+from rockflex.foundation.shown import shortened, shown
+from rockflex.foundation.versions import package_versions
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 
@@ -172,7 +172,7 @@ def page_as_html(page: ReportPage, figures: Figures) -> str:
     """Return a page as HTML that needs no other file."""
     from markupsafe import Markup
 
-    from rockflex.plot import figure_as_svg
+    from rockflex.plot._figures import figure_as_svg
 
     drawings = {
         stem: (label, Markup(inline_svg(figure_as_svg(figure), stem, label)))

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 from rockflex.structure.file._object_tables import CLASS, arguments_in_table
 from rockflex.structure.file._structure_entry import ELEMENTS, KINDS
 from rockflex.structure.file._structure_tables import PROFILES

@@ -4,17 +4,17 @@ import inspect
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
-from types import ModuleType
 from typing import Any, cast, get_args, get_type_hints
 
 import numpy as np
 
-import rockflex.modal
 import rockflex.structure
-from rockflex._arrays import Array
-from rockflex._errors import InputError
-from rockflex._registry import registered_objects
-from rockflex._shown import shortened, shown
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.registry import registered_objects
+from rockflex.foundation.shown import shortened, shown
+from rockflex.structure._attachment import YieldingStory
+from rockflex.structure._participation import MassNormalisedModes
 
 CLASS = "class"
 
@@ -122,7 +122,7 @@ def structure_from_table(table: Mapping[str, Any], place: str) -> Any:
     """
     built = object_from_table(dict(table), place)
     try:
-        if not isinstance(built, rockflex.modal.RockingProperties):
+        if not isinstance(built, rockflex.structure.RockingProperties):
             built.rocking()
     except Exception as error:  # values that fit no structure break its formulas anywhere
         raise InputError(f"{place}: it is not a structure: {shortened(str(error))}.") from error
@@ -132,8 +132,7 @@ def structure_from_table(table: Mapping[str, Any], place: str) -> Any:
 @cache
 def structure_classes() -> dict[str, type]:
     """Return the classes of structures, their parts and their grounds by name, with those of installed packages."""
-    own: tuple[ModuleType, ...] = (rockflex.structure, rockflex.modal)
-    found = [each for module in own for each in vars(module).values()]
+    found = [*vars(rockflex.structure).values(), MassNormalisedModes, YieldingStory]
     found += [each for group in ("structures", "elements") for each in registered_objects(group).values()]
     return {each.__name__: each for each in found if isinstance(each, type) and is_dataclass(each)}
 

@@ -8,30 +8,21 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeA
 
 from pydantic import Field, SerializerFunctionWrapHandler, create_model, model_serializer, model_validator
 
-from rockflex._errors import InputError
-from rockflex._files import check_regular_file, checked_file_path, unicode_text
-from rockflex._registry import registered_objects, source_checksum
-from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
-from rockflex._shown import shortened
-from rockflex.modal import (
-    BARS,
-    PLACE,
-    STEELS,
-    STRANDS,
-    BaseElement,
-    ElementLaw,
-    FrictionDamper,
-    RockingProperties,
-    Tendon,
-    ViscousDamper,
-    YieldingDissipator,
-    bar_fuse,
-    strand_tendon,
-    u_plate_fuse,
-)
-from rockflex.structure import Eccentric, Leaning, Restrained, YieldingStories
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.files import check_regular_file, checked_file_path, unicode_text
+from rockflex.foundation.registry import registered_objects, source_checksum
+from rockflex.foundation.schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
+from rockflex.foundation.shown import shortened
+from rockflex.structure._attachment import PLACE
+from rockflex.structure._devices import STEELS, STRANDS, bar_fuse, strand_tendon, u_plate_fuse
+from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure._from_matrices import matrix_file_checksum
-from rockflex.structure._structure import Structure
+from rockflex.structure._law_bars import BARS
+from rockflex.structure._leaning import Leaning
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._structure import Eccentric, Restrained, Structure
+from rockflex.structure._yielding_stories import YieldingStories
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_tables import (
     BeamTable,

@@ -7,24 +7,17 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field, StringConstraints
 
-from rockflex._errors import InputError
-from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameSchema, Period, SchemaKey, one_for_each
-from rockflex.modal import RockingProperties
-from rockflex.structure import (
-    Beam,
-    CantileverWithTipMass,
-    FishBone,
-    Frame,
-    LumpedMasses,
-    LumpedStructure,
-    Section,
-    TaperedTower,
-    WallFrame,
-    from_matrices,
-    from_modes,
-    rigid_block,
-)
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameSchema, Period, SchemaKey, one_for_each
+from rockflex.structure._beam import Beam
+from rockflex.structure._beam_sections import LumpedMasses
+from rockflex.structure._cross_section import Section
+from rockflex.structure._frames import FishBone, Frame, LumpedStructure
+from rockflex.structure._from_matrices import from_matrices, from_modes
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Structure
+from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
+from rockflex.structure._wall_frame import WallFrame
 from rockflex.structure.file._toml_table import TomlTable
 
 Shape = Literal["rectangle", "box", "circle", "tube"]

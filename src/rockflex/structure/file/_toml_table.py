@@ -10,8 +10,8 @@ from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from rockflex._errors import InputError
-from rockflex._schema import PLAIN, SchemaKey
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import PLAIN, SchemaKey
 
 AnyTable = TypeVar("AnyTable", bound="TomlTable")
 

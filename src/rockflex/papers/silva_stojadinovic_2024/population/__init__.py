@@ -1,20 +1,8 @@
-"""The random population of Sections 3.3 and 3.4: its structures, its study and its statistics."""
+"""The random population of Sections 3.3 and 3.4: its structures, its study and its statistics.
 
-from rockflex.papers.silva_stojadinovic_2024.population._statistics import PopulationStatistics, population_statistics
-from rockflex.papers.silva_stojadinovic_2024.population._study import (
-    PopulationPlan,
-    PopulationStudy,
-    Prototype,
-    draw_prototype,
-    run_population,
-)
+Names are imported when they are first used. The signatures are in ``__init__.pyi``.
+"""
 
-__all__ = [
-    "PopulationPlan",
-    "PopulationStatistics",
-    "PopulationStudy",
-    "Prototype",
-    "draw_prototype",
-    "population_statistics",
-    "run_population",
-]
+import lazy_loader as lazy
+
+__getattr__, __dir__, __all__ = lazy.attach_stub(__name__, __file__)

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_in_range, checked_whole_number
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex._values import Value
-from rockflex.response import STATUSES
+from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.checks import checked_in_range, checked_whole_number
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.values import Value
+from rockflex.response._respond import STATUSES
 
 if TYPE_CHECKING:
     import pandas as pd

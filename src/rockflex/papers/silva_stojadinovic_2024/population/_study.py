@@ -9,17 +9,25 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from pydantic import Field
 
-from rockflex import study
-from rockflex._checks import checked_whole_number
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
-from rockflex.models import RockingModel, modal_displacement
-from rockflex.motion import Suite
-from rockflex.response import Response, response_of_solution
-from rockflex.structure import Frame
-from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, StudySpec
+from rockflex.foundation.checks import checked_whole_number
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
+from rockflex.models._named_quantities import modal_displacement
+from rockflex.models._rocking_model import RockingModel
+from rockflex.motion._suite import Suite
+from rockflex.response._respond import response_of_solution
+from rockflex.response._response import Response
+from rockflex.structure._frames import Frame
+from rockflex.structure._rocking import RockingProperties
+from rockflex.studies._arguments import WORK_LIMIT, Motions, checked_motions, checked_work_limit, free_vibration_time
+from rockflex.studies._modal_combination import SecondMode, combine_modal_peaks, second_mode_peaks
+from rockflex.studies._plan import ChunkedPlan
+from rockflex.studies._prepared_case import PreparedCase, solutions_of_runs
+from rockflex.studies._result_tables import Columns, Row, columns_of_kind, result_columns, result_row
+from rockflex.studies._run_matrix import record_columns, record_facts
+from rockflex.studies._run_plan import run_plan
+from rockflex.studies.progress import ProgressChoice
+from rockflex.studies.spec import FreeVibration, StudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -157,18 +165,18 @@ class PopulationStudy(StudySpec):
         InputError
             If a record cannot be read.
         """
-        free = study.free_vibration_time(self.free_vibration)
+        free = free_vibration_time(self.free_vibration)
         return PopulationPlan(
             self.records.load(self._folder),
             self.pairs,
             self.seed,
             free,
             max(1, self.runs_per_chunk // 2),
-            study.checked_work_limit(self.work_limit),
+            checked_work_limit(self.work_limit),
         )
 
 
-class PopulationPlan(study.ChunkedPlan):
+class PopulationPlan(ChunkedPlan):
     """Pairs of runs, MDOF-S and 2DOF-S of the same random structure and record, divided into chunks.
 
     Pairs share no data, so a study of any size fits in memory.
@@ -187,7 +195,7 @@ class PopulationPlan(study.ChunkedPlan):
     ) -> None:
         super().__init__(motions, pairs, pairs_per_chunk)
         self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
-        self._facts = study.record_facts(motions)
+        self._facts = record_facts(motions)
 
     @property
     def n_runs(self) -> int:
@@ -195,22 +203,18 @@ class PopulationPlan(study.ChunkedPlan):
         return 2 * self.n_units
 
     @property
-    def columns(self) -> study.Columns:
+    def columns(self) -> Columns:
         """Columns of every chunk's table."""
         found: dict[str, Any] = {
             "pair": int,
             "n_stories": int,
             "behaviour": BEHAVIOURS,
-            **study.columns_of_kind(DRAWN, float),
+            **columns_of_kind(DRAWN, float),
         }
-        found |= study.record_columns(self.motions)
-        found |= (
-            study.columns_of_kind("pga pgv", float)
-            | study.columns_of_kind(STRUCTURE, float)
-            | study.columns_of_kind(SECOND, float)
-        )
-        found |= study.result_columns(suffix="_mdof") | study.result_columns(suffix="_2dof")
-        return found | study.columns_of_kind(COMBINED, float) | {"error": str}
+        found |= record_columns(self.motions)
+        found |= columns_of_kind("pga pgv", float) | columns_of_kind(STRUCTURE, float) | columns_of_kind(SECOND, float)
+        found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
+        return found | columns_of_kind(COMBINED, float) | {"error": str}
 
     def results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
@@ -218,20 +222,20 @@ class PopulationPlan(study.ChunkedPlan):
         rows = [row for batch in batches for row in batch]
         return {name: [row.get(name) for row in rows] for name in self.columns}
 
-    def _rows(self, units: Sequence[int]) -> list[study.Row]:
+    def _rows(self, units: Sequence[int]) -> list[Row]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
         drawn = [draw_prototype(self.seed, unit, len(self.motions)) for unit in units]
         motions = [self.motions[each.record] for each in drawn]
         structures = [each.frame().rocking() for each in drawn]
-        seconds = [study.second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
+        seconds = [second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
         cases = [self._cases(properties) for properties in structures]
         runs = [(case, motion, 1.0) for both, motion in zip(cases, motions, strict=True) for case in both]
-        solved = study.solutions_of_runs(runs)
-        rows = list[study.Row]()
+        solved = solutions_of_runs(runs)
+        rows = list[Row]()
         pairs = zip(solved[::2], solved[1::2], strict=True)
         given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
         for unit, prototype, motion, properties, second, both, solutions in given:
-            row: study.Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
+            row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
             row |= (
                 _prototype_facts(prototype, properties)
                 | self._facts[prototype.record]
@@ -245,26 +249,26 @@ class PopulationPlan(study.ChunkedPlan):
                 response_of_solution(case.model, motion.name, solution, case.tracked)
                 for case, solution in zip(both, solutions, strict=True)
             )
-            row |= study.result_row(all_modes, "_mdof")
+            row |= result_row(all_modes, "_mdof")
             row["max_second_displacement_mdof"] = both[0].tracked.peaks.named(solutions[0].peaks)["second_mode"].item()
-            row |= study.result_row(one_mode, "_2dof")
+            row |= result_row(one_mode, "_2dof")
             rows.append(row | _combined_peak_columns(one_mode, second))
         return rows
 
-    def _cases(self, properties: RockingProperties) -> Sequence[study.PreparedCase | InputError]:
+    def _cases(self, properties: RockingProperties) -> Sequence[PreparedCase | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
         models = RockingModel("MDOF-S", properties), RockingModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         try:
             return [
-                study.PreparedCase(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
+                PreparedCase(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
                 for model, each in zip(models, extra, strict=True)
             ]
         except InputError as error:
             return error, error
 
 
-def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> study.Row:
+def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> Row:
     return {
         "n_stories": drawn.n_stories,
         "behaviour": BEHAVIOURS.index("shear" if math.isinf(drawn.stiffness_ratio) else "flexure"),
@@ -283,7 +287,7 @@ def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> study.R
     }
 
 
-def _second_mode_columns(properties: RockingProperties, second: study.SecondMode) -> study.Row:
+def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> Row:
     omega = float(properties.omega[1])
     return {
         "period_2": 2.0 * math.pi / omega,
@@ -295,19 +299,19 @@ def _second_mode_columns(properties: RockingProperties, second: study.SecondMode
     }
 
 
-def _combined_peak_columns(rocking: Response, second: study.SecondMode) -> study.Row:
+def _combined_peak_columns(rocking: Response, second: SecondMode) -> Row:
     """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
-    peaks = study.combine_modal_peaks(rocking, second)
+    peaks = combine_modal_peaks(rocking, second)
     return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
 
 def run_population(
-    motions: study.Motions,
+    motions: Motions,
     pairs: int = 1000,
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
-    work_limit: float | None = study.WORK_LIMIT,
+    work_limit: float | None = WORK_LIMIT,
     progress: ProgressChoice = None,
     folder: str | Path | None = None,
     dask: str | None = None,
@@ -361,10 +365,10 @@ def run_population(
     2     2          3   flexure     rocking     rocking
     """
     count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
-    suite = motions if isinstance(motions, Suite) else Suite(study.checked_motions(motions))
-    free, limit = study.free_vibration_time(free_vibration), study.checked_work_limit(work_limit)
+    suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
+    free, limit = free_vibration_time(free_vibration), checked_work_limit(work_limit)
     given: dict[str, Any] = {"records": suite, "pairs": count, "seed": start}
     given["free_vibration"] = "settle" if free is None else free
     given["work_limit"] = "none" if limit is None else limit
     spec = PopulationStudy(**given)
-    return study.run_plan(spec.plan(), workers, progress, dask=dask, folder=folder, study=lambda: spec)
+    return run_plan(spec.plan(), workers, progress, dask=dask, folder=folder, study=lambda: spec)

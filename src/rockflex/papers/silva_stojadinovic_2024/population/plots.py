@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
+from rockflex.foundation.arrays import Array
+from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
 from rockflex.papers.silva_stojadinovic_2024.population._statistics import OutcomeGroups, outcome_groups, slope_and_r2
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLUE, GRAY, GREEN, ORANGE, RED, SMALL, Size

@@ -1,0 +1,143 @@
+"""Where an element acts: under the base, between floors, or from a height to the ground; and stories that yield."""
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from rockflex.foundation.checks import checked_finite, checked_positive, real_or_nan
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import short_number
+from rockflex.foundation.shown import shown
+from rockflex.foundation.units import Unit, named_unit
+
+PLACE = ("position", "between", "cosine", "height")  # the fields that say where an element acts
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Attachment:
+    """What an element connects if it is not between base and ground.
+
+    The elongation δ of an attached element is horizontal and counts from the structure at rest. Between floors i and j
+    it is δ = c (u_j - u_i), with the displacements u of the floors relative to the rotated base; a rotation of the base
+    turns the element with the structure. A tie from a height z to the ground has δ = c (u(z) + z θ), and on a base that
+    slides c times the slip as well. Its force joins the horizontal forces on floors and ground.
+
+    Attributes
+    ----------
+    between : tuple of int, or None
+        The floors (i, j), from 1 at the bottom; 0 is the base. None for other elements.
+    cosine : float
+        c, from -1 to 1 but not zero: that of the inclination to the horizontal. Its sign is the side on which a tie is
+        anchored: positive if it is stretched as the structure moves to the right.
+    height : float or None
+        Height z in m above the base of a tie to the ground; between floors their displacements are interpolated. None
+        for other elements.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> brace = rf.YieldingDissipator(stiffness=50e6, yield_force=200e3, between=(0, 1), cosine=0.8)
+    >>> brace.attached, brace.where
+    (True, 'floors 0 to 1')
+    """
+
+    if TYPE_CHECKING:
+        position: float  # a field of every element
+    between: tuple[int, int] | None = None
+    cosine: float = 1.0
+    height: float | None = None
+
+    def check_attachment(self) -> None:
+        """Check where the element acts.
+
+        Raises
+        ------
+        InputError
+            If it acts at two places, or a floor, a height or a direction is none.
+        """
+        named = [name for name in ("between", "height") if getattr(self, name) is not None]
+        if len(named) == 2 or (named and self.position != 0.0):
+            raise InputError(
+                "An element acts at a position of the base, between two floors or from a height to the ground, but "
+                f"{', '.join(f'{name} = {shown(getattr(self, name))}' for name in ('position', *named))} were given. "
+                "Give one of them.",
+                field=named[0],
+            )
+        cosine = checked_finite("cosine", self.cosine, "")
+        if not 0.0 < abs(cosine) <= 1.0 or (not named and cosine != 1.0):
+            raise InputError(
+                f"cosine must be from -1 to 1 and not zero, but {shown(self.cosine)} was given. It is that of the "
+                "inclination of an element between floors or from a height; one under the base has none.",
+                field="cosine",
+            )
+        vars(self).update(cosine=cosine)
+        if self.height is not None:
+            vars(self).update(height=checked_positive("height", self.height, "m"))
+        if self.between is not None:
+            vars(self).update(between=_checked_floors(self.between))
+
+    @property
+    def attached(self) -> bool:
+        """Whether the element acts between floors or from a height, and not under the base."""
+        return self.between is not None or self.height is not None
+
+    @property
+    def where(self) -> str:
+        """Where the element acts, in words."""
+        return self.where_in(named_unit("m"))
+
+    def where_in(self, length: Unit) -> str:
+        """Where the element acts, in words and in a unit of length."""
+        if self.between is not None:
+            return translated("floors {lower} to {upper}", lower=self.between[0], upper=self.between[1])
+        axis, place = ("x", self.position) if self.height is None else ("z", self.height)
+        return f"{axis} = {short_number(place / length.size)} {length.name}"
+
+    def arm(self, pivot: float, side: int) -> float:
+        """Return the distance in m from a pivot on a side, itself at `pivot` from the axis; zero if attached."""
+        return 0.0 if self.attached else pivot - side * self.position
+
+    def __repr__(self) -> str:
+        given = element_parameters(self).items()
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in given)})"
+
+
+def element_parameters(element: Attachment) -> dict[str, Any]:
+    """Return the parameters of an element by name; `between`, `cosine` and `height` only if it is attached."""
+    names = [each.name for each in fields(element)]
+    found = {name: getattr(element, name) for name in names if name not in PLACE[1:]}
+    return found | {name: getattr(element, name) for name in PLACE[1:] if element.attached}
+
+
+def _checked_floors(given: Any) -> tuple[int, int]:
+    found = tuple(given) if isinstance(given, list | tuple) else ()
+    numbers = [real_or_nan(each) for each in found]
+    if len(numbers) != 2 or numbers[0] == numbers[1] or not all(each >= 0 and each % 1 == 0 for each in numbers):
+        raise InputError(
+            f"between must be two floors, such as (0, 1), but {shown(given)} was given. Floors count from 1 at the "
+            "bottom; 0 is the base.",
+            field="between",
+        )
+    return int(numbers[0]), int(numbers[1])
+
+
+@dataclass(frozen=True)
+class YieldingStory:
+    """A story whose shear follows F = α k u + (1 - α) z of its drift u, with z elastic up to the strength.
+
+    Attributes
+    ----------
+    floor : int
+        The floor above it, from 1.
+    stiffness : float
+        k in N/m.
+    yield_force : float
+        Shear in N at which the story yields first.
+    post_yield_ratio : float
+        α, the stiffness after yielding over k, from 0 to below 1.
+    """
+
+    floor: int
+    stiffness: float
+    yield_force: float
+    post_yield_ratio: float

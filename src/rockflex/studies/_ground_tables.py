@@ -1,0 +1,166 @@
+"""The ground of a structure in files and forms: springs, beds of springs, friction, and the inertia of the base."""
+
+from typing import Annotated, Any, Literal, NoReturn, cast
+
+from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import PLAIN, WHOLE, GroundSchema, SchemaKey, SpringBedSchema, one_for_each
+from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure.file._toml_table import TomlTable
+from rockflex.studies._arguments import ground_under_structure
+from rockflex.studies._objects import function_document, object_document
+
+_EACH = one_for_each("spring")
+_DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
+
+
+class SpringsTable(TomlTable):
+    """The arguments of `Springs`; by default two springs are at the edges of the base."""
+
+    positions: Annotated[
+        list[float] | None,
+        SchemaKey(
+            "a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN
+        ),
+    ] = None
+    stiffness: Annotated[float | list[float], SchemaKey("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
+    damping: Annotated[
+        float | list[float] | None,
+        SchemaKey("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
+    ] = None
+    heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
+
+    def under(self, properties: RockingProperties) -> Springs:
+        """Return the springs under a structure."""
+        edges = [side * properties.half_width - properties.eccentricity for side in (-1, 1)]
+        springs = Springs(
+            edges if self.positions is None else self.positions,
+            self.stiffness,
+            0.0 if self.damping is None else self.damping,
+        )
+        return _springs_with_heave_damping(springs, self, properties)
+
+
+class SpringBedTable(SpringBedSchema, TomlTable):
+    """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
+
+    damping: Annotated[
+        float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
+    ] = None
+    n: Annotated[int, SchemaKey("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
+    end_zone: Annotated[
+        float | None, SchemaKey("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
+    ] = None
+    end_ratio: Annotated[
+        float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
+    ] = None
+    method: Annotated[
+        Literal["asce41", "gazetas"] | None,
+        SchemaKey('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
+    ] = None
+    density: Annotated[
+        float | None,
+        SchemaKey("the density of the soil, for dashpots that radiate, with Gazetas", "kg/m³", low=1.0, high=1e4),
+    ] = None
+
+    def under(self, properties: RockingProperties) -> Springs:
+        """Return the bed under a structure."""
+        where: dict[str, Any] = {"n": self.n, "damping": self.damping or 0.0, "eccentricity": properties.eccentricity}
+        zones = {"end_zone": self.end_zone, "end_ratio": self.end_ratio}
+        ends: dict[str, Any] = {name: value for name, value in zones.items() if value is not None}
+        if self.density is not None and self.method != "gazetas":
+            raise InputError('density is for method = "gazetas". Leave it out, or give the method.', field="density")
+        if self.subgrade_modulus is not None:
+            if self.shear_modulus is not None or self.poisson_ratio is not None:
+                _refuse_both("subgrade_modulus", "the shear_modulus and poisson_ratio")
+            if self.method is not None:
+                _refuse_both("method", "the subgrade_modulus")
+            bed = winkler_bed(properties.half_width, self.breadth, self.subgrade_modulus, **where, **ends)
+        elif self.shear_modulus is not None and self.poisson_ratio is not None and self.method == "gazetas":
+            for name in ("end_ratio", "damping"):
+                if getattr(self, name) is not None:
+                    _refuse_both(name, 'the method "gazetas", which gives it')
+            if self.density is not None and self.heave_damping_ratio is not None:
+                _refuse_both("density", "the heave_damping_ratio")
+            size = properties.half_width, self.breadth
+            more: dict[str, Any] = {"end_zone": self.end_zone, "density": self.density}
+            more |= {"n": self.n, "eccentricity": properties.eccentricity}
+            bed = gazetas_bed(*size, self.shear_modulus, self.poisson_ratio, **more)
+        elif self.shear_modulus is not None and self.poisson_ratio is not None:
+            if ends:
+                _refuse_both(next(iter(ends)), "the shear_modulus, whose end zones are those of ASCE 41")
+            bed = asce41_bed(properties.half_width, self.breadth, self.shear_modulus, self.poisson_ratio, **where)
+        else:
+            raise InputError(
+                "A bed needs its stiffness. Give subgrade_modulus in N/m³; or shear_modulus in N/m² and poisson_ratio, "
+                "for the stiffened ends of ASCE 41.",
+                field="subgrade_modulus",
+            )
+        return _springs_with_heave_damping(bed, self, properties)
+
+
+class GroundTable(GroundSchema, TomlTable):
+    """The arguments of `Ground`, with springs or a bed as tables."""
+
+    springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
+    bed: Annotated[SpringBedTable | None, SchemaKey("a table", form=PLAIN)] = None
+
+    def under(self, properties: RockingProperties) -> Ground:
+        """Return the ground under a structure."""
+        if self.springs is not None and self.bed is not None:
+            raise InputError(
+                "The ground has springs and a bed. Give one of the two tables.", place="[ground]", field="ground.bed"
+            )
+        springs = None
+        for name, table in (("springs", self.springs), ("bed", self.bed)):
+            try:
+                springs = springs if table is None else table.under(properties)
+            except InputError as error:
+                raise InputError(str(error), place=f"[ground.{name}]", field=f"ground.{name}.{error.field}") from error
+        try:
+            return Ground(self.friction, springs, self._inertia(properties))
+        except InputError as error:
+            raise InputError(str(error), place="[ground]", field=f"ground.{error.field or 'friction'}") from error
+
+    def _inertia(self, properties: RockingProperties) -> float | None:
+        if self.mat_mass is None:
+            if self.base_inertia is None and (self.springs or self.bed):
+                raise InputError(
+                    "A base without rotary inertia on springs has no inertia against rotation once all modes are "
+                    "included. Give mat_mass in kg for a rigid mat as wide as the base, or base_inertia in kg m² for "
+                    "base and floors together.",
+                    field="base_inertia",
+                )
+            return self.base_inertia
+        if self.base_inertia is not None:
+            _refuse_both("mat_mass", "the base_inertia")
+        return self.mat_mass * (2.0 * properties.half_width) ** 2 / 12.0
+
+
+class GivenGround(GroundTable):
+    """A `Ground`, or a function of `RockingProperties` that returns one, in the place of a table."""
+
+    given: Any
+
+    def under(self, properties: RockingProperties) -> Ground:
+        """Return the ground under a structure."""
+        return cast("Ground", ground_under_structure(properties, self.given))
+
+    def document(self) -> Any:
+        """Return what determines it."""
+        of = object_document if isinstance(self.given, Ground) else function_document
+        return of("ground", self.given)
+
+
+def _springs_with_heave_damping(
+    springs: Springs, table: SpringsTable | SpringBedTable, properties: RockingProperties
+) -> Springs:
+    if table.heave_damping_ratio is None:
+        return springs
+    if table.damping is not None:
+        _refuse_both("heave_damping_ratio", "the damping")
+    return springs.damped(table.heave_damping_ratio, properties.m_tot)
+
+
+def _refuse_both(name: str, other: str) -> NoReturn:
+    raise InputError(f"{name} was given besides {other}. Leave one of them out.", field=name)
