@@ -59,7 +59,7 @@ def test_a_token_opens_the_page_once_and_a_cookie_from_then_on() -> None:
 )
 def test_it_is_made_for_addresses_that_others_reach(monkeypatch, host, no_token, given) -> None:
     made = []
-    monkeypatch.setattr("rockflex.web.serve", lambda *_, token, **__: made.append(token))
+    monkeypatch.setattr("rockflex.web._serve.serve", lambda *_, token, **__: made.append(token))
     for _ in range(2):
         cli.serve(host=host, no_token=no_token)
     assert [len(token) > 20 for token in made] == [given] * 2

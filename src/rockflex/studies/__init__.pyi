@@ -8,6 +8,7 @@ from ._moment_rotation import moment_rotation as moment_rotation
 from ._plan import CrossPlan as CrossPlan
 from ._prepared_case import PreparedCase as PreparedCase
 from ._pushover import pushover as pushover
+from ._run_matrix import record_groups as record_groups
 from ._run_study import estimate_time as estimate_time
 from ._run_study import fill_study as fill_study
 from ._run_study import load_study as load_study
