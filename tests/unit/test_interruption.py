@@ -23,6 +23,7 @@ from rockflex.web._refusal import Refusal
 
 FRAME = make_frame(n_stories=3, period=0.8, aspect_ratio=6.0)
 ASKED, SOON = 0.3, 20.0  # s: when a run is asked to stop, and when it has, on the slowest machine
+BUSY = 2.0  # s: what it computes until then at most; 0.05 here, and 10 to 60 if it looked up at the end only
 
 
 @cache
@@ -147,16 +148,16 @@ except KeyboardInterrupt:
         'rf.simulate(stiff, record, "MDOF-S", "peaks", work_limit=None)',
     ],
 )
-def test_an_interrupt_is_heard_within_a_fifth_of_a_second(call) -> None:
+def test_an_interrupt_is_heard_soon_without_the_lock(call) -> None:
     made = subprocess.run(
         [sys.executable, "-c", DEAF.replace("CALL", call)], capture_output=True, text=True, timeout=60, check=True
     )
-    assert float(made.stdout) < 0.2
+    assert float(made.stdout) < BUSY
 
 
 @pytest.mark.slow
 def test_a_motion_beyond_all_measure_ends() -> None:
-    call = "rf.simulate(rf.Frame(**frame, period=1.0), long[0].scaled(1.5e150), 'fixed', 'peaks')"
+    call = "rf.simulate(rf.Frame(**frame, period=1.0), rf.load_suite('el-centro-1940')[0].scaled(1.5e150), 'fixed')"
     begin, _ = DEAF.split("clock =")
     made = subprocess.run([sys.executable, "-c", begin.replace("CALL", call) + "work()"], timeout=60, check=True)
     assert made.returncode == 0

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
+from rockflex._checks import masked_count
 from rockflex._errors import InputError
 from rockflex.engine.field import Compiled, Field, Function, Jump
 
@@ -484,7 +485,8 @@ def stacked_array(name: str, values: Any, shape: tuple[int, ...], count: int, *,
 
 
 def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True) -> Array:
-    """Return a copy in double precision, and refuse what has another shape or is not finite."""
+    """Return a copy in double precision, and refuse what has another shape, is masked or is not finite."""
+    _check_unmasked(name, values)
     if type(values) is np.ndarray and values.dtype == float:
         found = values.copy()
     else:
@@ -499,8 +501,14 @@ def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True
     return found
 
 
+def _check_unmasked(name: str, values: Any) -> None:
+    if masked_count(values):
+        raise InputError(f"{name} must not have masked values: leave them out or fill them first.")
+
+
 def acceleration(values: Any) -> Array:
     """Return an acceleration as the loops need it."""
+    _check_unmasked("the acceleration", values)
     found = np.asarray(values)
     if found.ndim != 1 or found.size == 0:
         raise InputError(f"The acceleration must be one row of at least one sample, but {found.shape} was given.")

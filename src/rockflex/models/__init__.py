@@ -68,6 +68,7 @@ from rockflex.models._rigid_ground_system import may_stack, system_on_rigid_grou
 from rockflex.models._rocking_model import LEVEL, Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import LOADED, SpringModel
+from rockflex.models._state_checks import check_states
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._stored_energies import floor_accelerations, soil_strain, stored_energies
 from rockflex.models._values_at_states import (
@@ -126,6 +127,7 @@ __all__ = [
     "accelerations_at_states",
     "acting_side",
     "arm_of_element",
+    "check_states",
     "element_energies",
     "element_force_sums",
     "element_forces",
