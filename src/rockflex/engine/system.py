@@ -14,6 +14,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._checks import masked_count
 from rockflex._errors import InputError
+from rockflex._shown import shown
 from rockflex.engine.field import Compiled, Field, Function, Jump
 
 Key = Hashable
@@ -339,7 +340,7 @@ class System:
             )
         listed: Any = found.events
         if not isinstance(listed, tuple | list):
-            raise InputError(f"{place}events must be a tuple, but {listed!r} was given.")
+            raise InputError(f"{place}events must be a tuple, but {shown(listed)} was given.")
         events = _checked_events(place, found.events, n, self.count)
         if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
@@ -353,7 +354,7 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
     found: Any = phase.field
     if not isinstance(found, Field):
         if not callable(found):
-            raise InputError(f"{place}field must be a Field or a function, but {found!r} was given.")
+            raise InputError(f"{place}field must be a Field or a function, but {shown(found)} was given.")
         function: Any = found
         address = _address_of(function)
         found = Function(function, n) if address is None else Compiled(function, address, n)
@@ -414,7 +415,7 @@ def _of(part: Any, place: int, names: dict[str, int]) -> Any:
 def _checked_events(place: str, events: Sequence[Any], n: int, count: int) -> tuple[Event, ...]:
     for event in events:
         if not isinstance(event, Event):
-            raise InputError(f"{place}events must be of the class Event, but {event!r} was given.")
+            raise InputError(f"{place}events must be of the class Event, but {shown(event)} was given.")
     places = [f"{place}event {event.name!r}: " for event in events]
     found = _stacked(places, events, EVENT_NUMBERS, n, count)
     for here, event, numbers in zip(places, events, found, strict=True):
@@ -426,7 +427,7 @@ def _checked_events(place: str, events: Sequence[Any], n: int, count: int) -> tu
         if rest is None:
             continue
         if not isinstance(rest, Rest):
-            raise InputError(f"{here}rest must be of the class Rest, but {rest!r} was given.")
+            raise InputError(f"{here}rest must be of the class Rest, but {shown(rest)} was given.")
         if callable(event.jump):
             raise InputError(f"{here}a jump that is a function says itself what follows, so that there can be no rest.")
         if isinstance(event.jump, Jump):

@@ -23,9 +23,6 @@ MIRRORS = 4  # phases that may have a mirror image yet to come
 PREPARING = RLock()
 AT_ONCE = 4096  # entries of rows at several places of a block that fit into the cache, before they are doubled
 VAGUE = 1e300  # a bound that is as good as none, and does not overflow
-# Once a block as large has been given back, glibc keeps such blocks for the next ones. The tables of a stack take
-# hundreds of them, and would spend a sixth of their time on asking the system for memory.
-np.empty(1 << 18)
 
 
 class Tables(NamedTuple):
