@@ -50,6 +50,8 @@ def junk() -> dict[str, Any]:
         "object array": np.array([object(), None], dtype=object),
         "no rows": np.zeros((0, 3)),
         "no columns": np.zeros((2, 0)),
+        "masked": np.ma.masked_values([1.0, 2.0, -9999.0], -9999.0),
+        "masked rows": [np.ma.masked_values([1.0, -9999.0], -9999.0), [1.0, 2.0]],
         "dates": np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[D]"),
         "date": date(2020, 1, 1),
         "dict": {"a": 1},

@@ -39,14 +39,16 @@ def refused(call: Any, arguments: dict[str, Any]) -> str | None:
 @pytest.mark.slow
 @pytest.mark.parametrize("group", [hostile.structures, hostile.motions, hostile.fits, hostile.studies])
 def test_every_argument_is_judged(group: Any) -> None:
-    never = dict.fromkeys(("complex", "complex array", "in itself", "bytes", "object", "dates", "date"))
+    never = dict.fromkeys(
+        ("complex", "complex array", "in itself", "bytes", "object", "dates", "date", "masked", "masked rows")
+    )
     for name, argument, what, call, arguments in hostile.cases(group()):
         if argument in FUNCTIONS and what in ("function", "class"):
             continue
         message = refused(call, arguments)
         where = f"{name}({argument}={what})"
         assert message is not None or what not in never, f"{where} was taken"
-        assert message is None or len(message) < 2000, where
+        assert message is None or (len(message) < 2000 and " at 0x" not in message), where
         if message is not None and what not in IN_PLACE and argument not in ("units", "dt", "path", "paths"):
             assert NAMED.get(argument, argument).lower() in message.lower(), f"{where}: {message}"
 

@@ -251,7 +251,7 @@ class Odd:
     ],
 )
 def test_what_a_law_may_not_answer(answer, text):
-    with pytest.raises(InputError, match=r"The impact law <.*Odd object at .*> failed: ") as caught:
+    with pytest.raises(InputError, match="The impact law Odd failed: ") as caught:
         velocities_after(Odd(answer), ALL.truncated(2), np.zeros(2), 1.0)
     assert text in str(caught.value)
 

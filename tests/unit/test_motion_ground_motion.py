@@ -1,5 +1,8 @@
 """Ground motions: construction, integrals, finer sampling, correction and filtering."""
 
+from decimal import Decimal
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.signal import butter, sosfreqz
@@ -32,6 +35,53 @@ def test_holds_a_copy():
 def test_refuses(arguments, text):
     with pytest.raises(InputError, match=text):
         GroundMotion(*arguments)
+
+
+@pytest.mark.parametrize(
+    "dt", [True, np.True_, np.array(True), "0.02", np.str_("0.02"), np.array("0.02"), b"0.02", np.ma.masked]
+)
+def test_a_time_step_is_a_number(dt):
+    with pytest.raises(InputError, match="dt must be a number in s, but") as caught:
+        GroundMotion([0.0, 1.0, 2.0], dt)
+    assert caught.value.field == "dt"
+    for call in (MOTION.scaled, MOTION.resampled, lambda x: MOTION.sd(x), lambda x: MOTION.spectrum([1.0], x)):
+        with pytest.raises(InputError):
+            call(dt)
+
+
+@pytest.mark.parametrize("dt", [1, np.float32(0.25), np.int64(2), np.array(0.5), Fraction(1, 2), Decimal("0.25")])
+def test_a_time_step_is_any_number(dt):
+    assert GroundMotion([0.0, 1.0, 2.0], dt).dt == float(dt)
+
+
+GAP = np.ma.masked_values([0.0, 1.0, -9999.0, 2.0], -9999.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "call"),
+    [
+        ("acceleration", lambda: GroundMotion(GAP, 0.01)),
+        ("acceleration", lambda: GroundMotion([1.0, np.ma.masked, 2.0], 0.01)),
+        ("vertical", lambda: GroundMotion([1.0, 2.0, 3.0, 4.0], 0.01, vertical=GAP)),
+        ("periods", lambda: MOTION.spectrum(GAP)),
+    ],
+)
+def test_a_mask_is_not_forgotten(field, call):
+    with pytest.raises(InputError, match=rf"{field} .* with 1 masked value .*compressed.*filled") as caught:
+        call()
+    assert caught.value.field == field
+
+
+def test_a_mask_that_hides_nothing():
+    assert GroundMotion(np.ma.masked_array([0.0, 1.0, 2.0]), 0.01).pga == 2.0
+
+
+@pytest.mark.parametrize(
+    "values", [["1", "2", "3"], [True, False, True], np.array(["1", "2", "3"], dtype=object), [b"1", b"2", b"3"]]
+)
+def test_texts_and_booleans_are_no_numbers(values):
+    with pytest.raises(InputError, match="acceleration must be a sequence of numbers"):
+        GroundMotion(values, 0.01)
 
 
 def test_scaling_keeps_name_and_metadata_and_tells_the_whole_factor():

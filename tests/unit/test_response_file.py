@@ -232,15 +232,19 @@ def test_any_damage_is_named(tmp_path, kind):
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
-    """The arrays and the scalars of sound files: two of a frame, and one of a block with elements."""
+    """The arrays and the scalars of sound files: two of a frame, and some with elements or on other grounds."""
     made = {}
-    cases = {kind: (FRAME, *rest) for kind, rest in SOUND.items()} | {"elements": RUNS["elements"]}
+    cases = {kind: (FRAME, *rest) for kind, rest in SOUND.items()}
+    cases |= {kind: RUNS[kind] for kind in ("elements", "slides", "slides on springs")} | {"held": HELD}
     for kind, (structure, model, options) in cases.items():
         path = rf.simulate(structure, MOTION, model, **options).save(tmp_path_factory.mktemp("sound") / "run")
         with np.load(path) as file:
             arrays = dict(file)
         made[kind] = arrays, json.loads(str(arrays.pop("response")))
     return made
+
+
+HELD = rf.Restrained(FRAME, [rf.FrictionDamper(2e4, 0.3)]), "MDOF-S", {}
 
 
 def rewritten(path, arrays, scalars):
@@ -298,6 +302,78 @@ def test_arrays_that_do_not_fit(saved, tmp_path, kind, name, change, text):
     with pytest.raises(rf.InputError, match=text) as caught:
         rf.Response.load(path)
     assert str(caught.value).startswith(f"{path} is not a saved response (")
+
+
+TIME, SIDE, LAST = 0, 1, -1
+
+
+@pytest.mark.parametrize("kind", ["simplified", "complete", "elements", "held", "slides", "slides on springs"])
+@pytest.mark.parametrize(
+    ("column", "value", "text"),
+    [
+        (SIDE, 7.0, "the side 7"),
+        (SIDE, 0.5, r"the side 0\.5"),
+        (SIDE, 2.0**70, r"the side 1\.18"),
+        (TIME, 1e300, r"the value 1e\+300, but at most 1e\+100"),
+        (TIME, 1e20, r"the time 1e\+20, but times must lie from 0"),
+        (TIME, -1.0, "the time -1, but times must lie from 0"),
+        (TIME, 0.0, "the time 0, but times must not decrease"),
+        *((column, -1e300, r"the value 1e\+300, but at most 1e\+100") for column in range(2, 9)),
+    ],
+)
+def test_states_that_cannot_be(saved, tmp_path, kind, column, value, text):
+    arrays, scalars = saved[kind]
+    states = arrays["states"].copy()
+    row = len(states) // 2
+    states[row, min(column, states.shape[1] - 1)] = value
+    with pytest.raises(
+        rf.InputError, match=rf"run\.npz is not a saved response \(InputError: states\[{row}\] has {text}"
+    ):
+        rf.Response.load(rewritten(tmp_path, arrays | {"states": states}, scalars))
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "text"),
+    [
+        ("held", 3.0, "branch of element 0 3, but 0 or 1 or -1"),
+        ("slides", 0.5, r"slip 0\.5, but -2 or -1 or 0 or 1 or 2"),
+        ("slides", 1e30, r"slip 1e\+30"),
+        ("slides on springs", 1e30, r"number of branches 1e\+30, but a whole number"),
+        ("slides on springs", 0.5, r"number of branches 0\.5, but a whole number"),
+        ("slides on springs", -3.0, "number of branches -3, but a whole number"),
+        ("slides on springs", 0.0, "branch -1, but 0 or 1 or 2"),
+    ],
+)
+def test_branches_that_cannot_be(saved, tmp_path, kind, value, text):
+    arrays, scalars = saved[kind]
+    states = arrays["states"].copy()
+    states[5, LAST] = value
+    with pytest.raises(rf.InputError, match=rf"states\[5\] has the {text}"):
+        rf.Response.load(rewritten(tmp_path, arrays | {"states": states}, scalars))
+
+
+def test_states_in_another_order(saved, tmp_path):
+    arrays, scalars = saved["simplified"]
+    with pytest.raises(rf.InputError, match=r"states\[1\] has the time .*, but times must not decrease"):
+        rf.Response.load(rewritten(tmp_path, arrays | {"states": arrays["states"][::-1]}, scalars))
+
+
+def test_what_could_not_be_read_again_is_not_written(tmp_path):
+    run = rf.simulate(FRAME, MOTION.scaled(1e150), "fixed")
+    with pytest.raises(rf.InputError, match=r"at most 1e\+100"):
+        run.save(tmp_path / "run")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_law_without_a_name_of_its_own_is_remembered_by_that_of_its_class(tmp_path):
+    class Lossy:
+        keeps, loses = "half of the rotation", "the other half"
+
+        def after(self, properties, modal_velocity, rotation_velocity):
+            return rf.Restitution(0.5).after(properties, modal_velocity, rotation_velocity)
+
+    back = rf.Response.load(rf.simulate(FRAME, MOTION, impact=Lossy()).save(tmp_path / "run"))
+    assert back.history.model.law.description == "Lossy"
 
 
 def test_peaks_of_other_floors(saved, tmp_path):

@@ -1,5 +1,6 @@
 """Values in messages: in full where they are short, and never long."""
 
+import functools
 import re
 import time
 
@@ -26,6 +27,37 @@ from rockflex.foundation.shown import number_with_noun, shortened, shown
 )
 def test_short_values_are_written_as_they_are(value: object) -> None:
     assert shown(value) == repr(value)
+
+
+class Plain:
+    def method(self) -> None: ...
+
+
+def enclosed() -> tuple[object, object]:
+    class Inner: ...
+
+    return Inner(), lambda: None
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (Plain(), "Plain"),
+        (enclosed, "enclosed"),
+        (enclosed()[0], "Inner"),
+        (enclosed()[1], "<lambda>"),
+        ([Plain(), 1], "[Plain, 1]"),
+        (Plain().method, "<bound method Plain.method of Plain>"),
+        (("<a at 0x12>", 3), "('<a at 0x12>', 3)"),
+    ],
+)
+def test_nothing_is_named_by_its_place_in_memory(value: object, text: str) -> None:
+    assert shown(value) == text
+
+
+def test_addresses_are_not_cut_in_half() -> None:
+    for width in range(120, 160):
+        assert "0x" not in shown(functools.partial(enclosed, "x" * width, Plain()))
 
 
 class Endless:

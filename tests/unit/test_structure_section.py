@@ -91,7 +91,7 @@ def test_a_composite_section_by_hand():
         (lambda: rf.Section.rectangle(1.0, 0.0, **CONCRETE), "depth must be a positive"),
         (lambda: rf.Section.box(2.0, 1.0, 0.5, **CONCRETE), "less than half of 1 m, but 0.5 m was given"),
         (lambda: rf.Section.tube(1.0, 0.5, **CONCRETE), "Without a hollow it is a circle"),
-        (lambda: rf.Section.circle("1", **CONCRETE, stiffness_factor=-1), "stiffness_factor must be a positive"),
+        (lambda: rf.Section.circle(1.0, **CONCRETE, stiffness_factor=-1), "stiffness_factor must be a positive"),
         (lambda: rf.Section.composite([]), "parts must hold one section at least"),
         (lambda: rf.Section.composite(3), "a list of sections and offsets, [(section, offset), ...], but 3"),
         (lambda: rf.Section.composite([PIER]), "parts must be a list of sections and offsets"),

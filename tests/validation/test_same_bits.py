@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import BY_HAND
 from random_runs import LINEAR, NONLINEAR, RandomRun, linear_run, nonlinear_run
 
 CASES = {kind: (kind, False) for kind in LINEAR} | {f"{kind}, shaken": (kind, True) for kind in LINEAR}
@@ -135,3 +136,47 @@ def test_runs_are_the_same_on_two_threads_and_in_another_process():
     for found in on_threads(runs):
         assert not any(differences(*each) for each in zip(alone, found, strict=True))
     assert [line(each) for each in alone] == in_a_process(list(CASES))
+
+
+WEIGHT, EDGE = 240e3 * 9.81, 1.2  # of the base below
+HELD = {  # by what: the elements whose forces are so many times larger
+    "nothing": lambda unit: (),
+    "a tendon": lambda unit: (rf.Tendon(0.1 * WEIGHT * unit, WEIGHT * unit),),
+    "a fuse": lambda unit: (rf.YieldingDissipator(10.0 * WEIGHT * unit, 0.1 * WEIGHT * unit, 0.02, EDGE),),
+    "friction": lambda unit: (rf.FrictionDamper(0.05 * WEIGHT * unit, EDGE),),
+}
+FORCES = "max_base_moment", "max_base_shear", "max_horizontal_reaction", "min_vertical_reaction"
+MOTIONS = "max_rotation", "max_top_displacement", "max_total_top_displacement", "time_of_max_base_moment", "n_impacts"
+
+
+def in_other_units(model, motion, held, unit):
+    """Peaks of a base whose masses and forces are so many times larger, and its forces in that unit."""
+    base = {
+        **BY_HAND,
+        **{name: np.multiply(BY_HAND[name], unit) for name in ("effective_mass", "i_theta", "l0r", "m_tot")},
+    }
+    found = rf.simulate(
+        rf.RockingProperties(**base, elements=HELD[held](unit)), motion, model, "peaks", work_limit=None
+    )
+    return [getattr(found, name) for name in MOTIONS], [getattr(found, name) / unit for name in FORCES]
+
+
+@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize(
+    ("model", "shaken"), [("MDOF-S", False), ("MDOF-S", True), ("2DOF-C", False), ("fixed", False)]
+)
+def test_forces_in_any_unit_have_the_same_bits(model, shaken, held) -> None:
+    motion = rf.load_suite("el-centro-1940")[0]
+    if shaken:
+        motion = rf.GroundMotion(motion.acceleration, motion.dt, vertical=0.4 * motion.acceleration[::-1])
+    expected = in_other_units(model, motion, held, 1.0)
+    for power in (-900, -600, -1, 1, 300, 400, 480, 900):
+        assert in_other_units(model, motion, held, 2.0**power) == expected, power
+
+
+@pytest.mark.parametrize("power", [-1000, -700, -600, -200, 200, 500, 900])
+def test_any_strength_of_a_motion_has_the_same_bits(power) -> None:
+    motion, base = rf.load_suite("el-centro-1940")[0], rf.RockingProperties(**BY_HAND)
+    one, other = (rf.simulate(base, motion.scaled(2.0**each), "fixed", "peaks") for each in (0, power))
+    for name in ("max_top_displacement", "max_base_moment", "max_base_shear"):
+        assert getattr(other, name) / 2.0**power == getattr(one, name)

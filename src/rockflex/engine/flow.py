@@ -15,7 +15,10 @@ from rockflex.engine.tableau import C
 
 if cython.compiled:
     from cython.cimports.libc.math import INFINITY, ceil, fabs, isfinite, sqrt
+    from cython.cimports.rockflex.engine.polynomials import unit_for
 else:
+    from rockflex.engine.polynomials import unit_for
+
     INFINITY = float("inf")
 
 TOLERANCE = cython.declare(cython.double, 1e-10)  # relative error of a step
@@ -24,7 +27,6 @@ SAFETY = cython.declare(cython.double, 0.9)  # of the error control
 LEAST = cython.declare(cython.double, 0.2)
 MOST = cython.declare(cython.double, 4.0)
 WORK = cython.declare(cython.int, 12)  # samples that a step counts like
-STRETCH = cython.declare(cython.longlong, 1 << 22)  # of work, after which a march pauses
 OFTEN = cython.declare(cython.int, 64)  # steps in a sample without a look at Ctrl-C
 NEAR = cython.declare(cython.double, 0.75)  # of its peak: an output below that at both ends of a step does not reach it
 YOUNG = cython.declare(cython.int, 3)  # steps after a change, in which it may: one that has just begun may soon be over
@@ -81,21 +83,25 @@ def range_of(
     high: cython.double = max(first, last)
     b: cython.double = 3.0 * chord - 2.0 * before - after
     c: cython.double = before + after - 2.0 * chord
+    unit: cython.double = 1.0
     root: cython.double
     q: cython.double
     t: cython.double
     k: cython.int
-    if before * after > 0.0 and min(fabs(before), fabs(after)) > 8.0 * slack:  # it is monotonic
+    if (before > 0.0) == (after > 0.0) and min(fabs(before), fabs(after)) > 8.0 * slack:  # it is monotonic
         return low, high
     root = b * b - 3.0 * before * c
+    if not 1e-240 < fabs(root) < 1e280:  # squares that vanish or overflow
+        unit = unit_for(fabs(before) + fabs(b) + fabs(c) + 1e-305)
+        root = (unit * b) * (unit * b) - 3.0 * (unit * before) * (unit * c)
     if root > 0.0:
-        q = -b - (sqrt(root) if b > 0.0 else -sqrt(root))
+        q = -unit * b - (sqrt(root) if b > 0.0 else -sqrt(root))
         for k in range(2):
-            if k == 0 and fabs(3.0 * c) <= fabs(q):
+            if k == 0 and fabs(3.0 * unit * c) <= fabs(q):
                 continue
-            if k == 1 and fabs(before) >= fabs(q):
+            if k == 1 and fabs(unit * before) >= fabs(q):
                 continue
-            t = q / (3.0 * c) if k == 0 else before / q  # where it is level
+            t = q / (3.0 * unit * c) if k == 0 else unit * before / q  # where it is level
             if t > 0.0:
                 t = first + t * (before + t * (b + t * c))
                 low, high = min(low, t), max(high, t)
@@ -117,7 +123,7 @@ def falls(first: cython.double, last: cython.double, before: cython.double, afte
         high = 3.0 * last - 2.0 * before - after
         after += before - 2.0 * last
         if after > 0.0 and -2.0 * after < high < 0.0:
-            low = before - 0.25 * high * high / after
+            low = before - 0.25 * high * (high / after)
         return low <= STEEPEST * slack
     low, high = range_of(first, last, before, after)
     return min(low, high) <= 0.0
@@ -267,7 +273,7 @@ class Flow:
         rise: cython.double = 0.0
         risen: cython.double = 0.0
         before: cython.double = self.peaks.before()
-        until: cython.longlong = self.peaks.work() + STRETCH
+        until: cython.longlong = self.peaks.pause()
         self.peaks.look(False)
         while i < last and self.peaks.work() < until:
             if v.shape[0] > 0:

@@ -14,6 +14,7 @@ cdef class Journal:
     cdef double[:, ::1] rows
     cdef int[::1] places
 
+    cpdef long long size(self) noexcept nogil
     cpdef bint wants(self, double a, double v) noexcept nogil
     cpdef int keep(self, double sample, double a, double v, double[::1] y, int place) except -1 nogil
     cpdef void begin(self) noexcept nogil

@@ -55,7 +55,7 @@ cdef extern from "march.h" nogil:
         double *seen
         int resumes, count, room, width, looks
         void *workspace
-        long long work
+        long long pause, work
     ctypedef struct Phase:
         Tables tables
         int events, halvings, which
@@ -115,6 +115,8 @@ cdef class Peaks:
     cdef int count(self) noexcept nogil
     cdef void keep(self, int count) noexcept nogil
     cdef long long work(self) noexcept nogil
+    cdef long long pause(self) noexcept nogil
+    cdef void pause_at(self, long long work) noexcept nogil
     cdef void add_work(self, long long more) noexcept nogil
     cdef void look(self, bint looks) noexcept nogil
     cdef double before(self) noexcept nogil

@@ -101,6 +101,14 @@ class Peaks:
         """Samples so far, and what counts like them."""
         return self.log.work
 
+    def pause(self):
+        """The work from which on the run looks up."""
+        return self.log.pause
+
+    def pause_at(self, work):
+        """Set that."""
+        self.log.pause = work
+
     def add_work(self, more):
         """Count more."""
         self.log.work += more

@@ -32,7 +32,7 @@ class Peaks:
 
     def __init__(self, one_sided: Array, states: int, room: int) -> None:
         self.high, self.when, self.room = np.zeros(one_sided.size), np.zeros(one_sided.size), room
-        self.candidates = np.zeros((room + 1, 2 + states + one_sided.size))
+        self.candidates, self.pauses = np.zeros((room + 1, 2 + states + one_sided.size)), 0
         self.begin(one_sided)
 
     def widen(self, rows: int) -> None:
@@ -68,6 +68,14 @@ class Peaks:
     def work(self) -> int:
         """Samples so far, and what counts like them."""
         return self.done
+
+    def pause(self) -> int:
+        """The work from which on the run looks up."""
+        return self.pauses
+
+    def pause_at(self, work: int) -> None:
+        """Set that."""
+        self.pauses = work
 
     def add_work(self, more: int) -> None:
         """Count more."""
@@ -222,7 +230,7 @@ class Phases(Steps):
         first, ahead, final = i, np.zeros(0), x
         while i < last:
             if (i - first) % BLOCK == 0:
-                if peaks.kept + BLOCK > peaks.room:
+                if peaks.kept + BLOCK > peaks.room or peaks.done >= peaks.pauses:
                     break
                 changes = np.abs(np.diff(a[i : min(i + BLOCK, last) + 1]))
                 parts = np.abs(p.moves[k][: p.bend.shape[2] - 2] @ np.array((*x, a[i], 1.0)))
@@ -238,7 +246,7 @@ class Phases(Steps):
             after = x + p.step[k][:n] @ np.array((*x, a[i], a[i + 1], 1.0))
             slopes = [at_start(p.slope[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
             turns = np.maximum(4.0 * bend - np.abs(new - old), 0.0)
-            excess = turns**2 / np.maximum(16.0 * bend, 1e-300) + cap
+            excess = turns * (turns / np.maximum(16.0 * bend, 1e-300)) + cap
             beyond = np.minimum(excess, np.abs(slopes[1] - slopes[0]) * (h / 8.0) + sway)
             lowest, highest = np.minimum(old, new) - beyond, np.maximum(old, new) + beyond
             if p.bend.shape[2] - 2 > n:

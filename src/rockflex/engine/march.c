@@ -319,8 +319,8 @@ static int begin_block(const Tables *p, const double *a, const double *v, int sa
     if (parts > n) product(parts + 2, up8(rows), p->cap, b->moves, w->cap);
     b->fine = 0;
     for (int j = 0; j < rows; j++) {
-        double bend = b->bend[j];
-        w->bend4[j] = 4.0 * bend, w->over[j] = 1.0 / (16.0 * bend + 1e-300);
+        const double bend = b->bend[j] < 1e300 ? b->bend[j] : 1e300; /* products of vague bounds may not be numbers */
+        w->bend4[j] = 4.0 * bend, w->over[j] = 1.0 / (16.0 * bend + 1e-305);
     }
     for (int k = 1; k < AHEAD; k++) {
         memcpy(w->bend4 + k * rows, w->bend4, sizeof *w->bend4 * rows);
@@ -334,7 +334,7 @@ static int begin_block(const Tables *p, const double *a, const double *v, int sa
    of that curvature gets furthest; where the change is too large for one, the row is monotonic. */
 static inline vec excess(vec change, vec bend4, vec over) {
     vec turns = larger(bend4 - absolute(change), all(0.0));
-    return turns * turns * over;
+    return turns * (turns * over); /* squares of forces in any unit might overflow, or vanish */
 }
 
 /* What counts of some rows. */
@@ -373,9 +373,15 @@ typedef struct { /* samples of a product, a bit for each */
 /* A lower bound of a row r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1, which `away` may take off. */
 static double lowest_of(double r0, double change, double first, double last, double away) {
     double b = change + first, c = -2.0 * first - last, d = first + last, least = change < 0.0 ? r0 + change : r0;
-    double root = c * c - 3.0 * b * d;
+    double root = c * c - 3.0 * b * d, unit = 1.0;
+    if (!(fabs(root) > 1e-240 && fabs(root) < 1e280)) { /* squares that vanish or overflow */
+        const int size = ilogb(fabs(b) + fabs(c) + fabs(d) + 1e-305);
+        unit = ldexp(1.0, size > -1000 ? -size : 1000); /* a power of two, which changes no bit of a place */
+        root = (unit * c) * (unit * c) - 3.0 * (unit * b) * (unit * d);
+    }
     if (root > 0.0) {
-        double q = -c - (c > 0.0 ? sqrt(root) : -sqrt(root)), at[2] = {q / (3.0 * d), b / q}; /* where it is level */
+        double q = -unit * c - (c > 0.0 ? sqrt(root) : -sqrt(root)); /* below: where it is level */
+        double at[2] = {q / (3.0 * unit * d), unit * b / q};
         for (int k = 0; k < 2; k++)
             if (at[k] > 0.0 && at[k] < 1.0) {
                 double value = r0 + at[k] * (b + at[k] * (c + at[k] * d));
@@ -505,8 +511,8 @@ static int inspect(const Tables *p, int phase, const double *a, int i, int sampl
 }
 
 /* Advance whole samples from i, up to `last`. Returns the number of the sample at which the motion stands: before the
-   first in which a condition may fail, or where a block begins for which there is no room for candidates. What is logged
-   does not change the motion. */
+   first in which a condition may fail, or where a block begins for which there is no room for candidates, or after so much
+   work that the run looks up. What is logged does not change the motion. */
 static int march(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) {
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
@@ -534,7 +540,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     log->looks = log->resumes = 0;
     for (int left = 0, calm = 0, fresh = 0; i < last && !log->looks; left -= AHEAD) {
         if (left == 0) {
-            if (log->count + BLOCK > log->room) {
+            if (log->count + BLOCK > log->room || log->work >= log->pause) {
                 memcpy(log->seen, before, sizeof *x * rows);
                 log->resumes = 1;
                 break;

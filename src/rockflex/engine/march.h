@@ -58,7 +58,7 @@ typedef struct {
     const double *cap;       /* the same columns: distance from the chord due to fast modes */
     const double *centre;    /* columns y, a0, a1 .., 1: at these samples, what they swing about, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
-    const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''|, not less than 1e100 if there are fast modes */
+    const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''|, not less than 1e300 if there are fast modes */
     const double *direct;    /* of every row, the factor of a */
     const double *magnitude; /* |now| */
     const double *most;      /* |outs| */
@@ -72,9 +72,10 @@ typedef struct {
     double *states;          /* a row for every sample, if a history is kept; otherwise null */
     double *candidates;      /* samples that may have a higher value within: phase, sample, y, bound of every output */
     double *seen;            /* rows where the march has stopped for want of room */
-    int resumes;             /* whether it has: it goes on from there with the same bits */
+    int resumes;             /* whether it has, or has paused: it goes on from there with the same bits */
     int count, room, width;  /* rows of candidates, at most so many; doubles in a row */
     void *workspace;         /* of `Loops.workspace` bytes for the phase with most rows */
+    long long pause;         /* the work from which on it stops where a block begins */
     int looks;               /* whether the march has stopped before a sample in which a condition may fail */
     long long work;          /* samples and expansions so far */
 } Log;

@@ -10,12 +10,18 @@ import cython
 import numpy as np
 
 if cython.compiled:
+    from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.libc.math import atan, cos, exp, fabs, hypot, sin, sqrt
+else:
+    from rockflex.engine.loops_twin import PyErr_CheckSignals
 
 PI = cython.declare(cython.double, pi)
 ENDLESS = cython.declare(cython.double, np.inf)
 SHORT = cython.declare(cython.double, 0.5)  # ωt below which power series replace closed forms, which would cancel
 TERMS = cython.declare(cython.int, 16)  # of these series: the next one is below 0.5¹⁶/16! of the first
+STRETCH = cython.declare(cython.Py_ssize_t, 1 << 22)  # samples between two looks at Ctrl-C: some 20 ms
+PIECE = cython.declare(cython.Py_ssize_t, 1 << 14)  # samples that are counted at once
+WITHIN = cython.declare(cython.Py_ssize_t, 32)  # samples that a part of one in which the motion is searched counts like
 COARSE = cython.declare(cython.Py_ssize_t, 256)  # samples from which peaks in all directions are first estimated
 
 
@@ -48,7 +54,8 @@ def peaks(acceleration, h, frequencies, zeta):
     with cython.nogil:
         for i in range(omegas.shape[0]):
             oscillator.tune(omegas[i])
-            out[i, 0], out[i, 1] = oscillator.peaks(a, motion)
+            oscillator.peaks(a, motion)
+            out[i, 0], out[i, 1] = oscillator.sd, oscillator.sv
     return found
 
 
@@ -106,9 +113,24 @@ class Oscillator:
     impulse: cython.double  # the responses at the next sample
     step: cython.double
     ramp: cython.double
+    sd: cython.double  # the largest |u| and |u'| so far
+    sv: cython.double
+    work: cython.Py_ssize_t  # since the last look at Ctrl-C
 
     def __init__(self, h: cython.double, zeta: cython.double):
-        self.h, self.zeta, self.bend = h, zeta, h * h / 8.0
+        self.h, self.zeta, self.bend, self.work = h, zeta, h * h / 8.0, 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def look_up(self, work: cython.Py_ssize_t) -> cython.int:
+        """After some work, see whether there was Ctrl-C."""
+        self.work += work
+        if self.work >= STRETCH:
+            self.work = 0
+            with cython.gil:
+                PyErr_CheckSignals()
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -178,15 +200,36 @@ class Oscillator:
 
     @cython.cfunc
     @cython.nogil
+    @cython.exceptval(-1)
+    def march(self, a: cython.double[::1], us: cython.double[::1], vs: cython.double[::1]) -> cython.int:
+        """Fill displacements and velocities at the samples."""
+        first: cython.Py_ssize_t = 0
+        if a.shape[0] > 0:
+            us[0] = vs[0] = 0.0
+        while first < a.shape[0]:
+            self.march_piece(a, us, vs, first, min(first + PIECE, a.shape[0] - 1))
+            self.look_up(PIECE)
+            first += PIECE
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
     @cython.exceptval(check=False)
-    def march(self, a: cython.double[::1], us: cython.double[::1], vs: cython.double[::1]) -> cython.void:
-        """Fill displacements and velocities at the samples.
+    def march_piece(
+        self,
+        a: cython.double[::1],
+        us: cython.double[::1],
+        vs: cython.double[::1],
+        first: cython.Py_ssize_t,
+        last: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Fill them from a sample to another one.
 
         The change of the state is summed, not the state: over thousands of steps that rounds less.
         """
         k: cython.Py_ssize_t
-        u: cython.double = 0.0
-        v: cython.double = 0.0
+        u: cython.double = us[first]
+        v: cython.double = vs[first]
         uu: cython.double = self.square * self.step
         uv: cython.double = self.impulse
         u1: cython.double = self.ramp / self.h
@@ -196,34 +239,67 @@ class Oscillator:
         v1: cython.double = self.step / self.h
         v0: cython.double = self.impulse - v1
         change: cython.double
-        for k in range(a.shape[0]):
-            us[k], vs[k] = u, v
-            if k + 1 < a.shape[0]:
-                change = (uv * v - (u0 * a[k] + u1 * a[k + 1])) - uu * u
-                v -= (vv * v + (v0 * a[k] + v1 * a[k + 1])) + vu * u
-                u += change
+        for k in range(first, last):
+            change = (uv * v - (u0 * a[k] + u1 * a[k + 1])) - uu * u
+            v -= (vv * v + (v0 * a[k] + v1 * a[k + 1])) + vu * u
+            u += change
+            us[k + 1], vs[k + 1] = u, v
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def peaks(self, a: cython.double[::1], motion: cython.double[:, ::1]) -> cython.int:
+        """Find the largest |u| and |u'| during a record, with room of two rows for the motion.
+
+        The peaks at samples are found first, so that few intervals may have a higher one inside.
+        """
+        first: cython.Py_ssize_t = 0
+        self.sd = self.sv = 0.0
+        self.march(a, motion[0], motion[1])
+        while first < a.shape[0]:
+            self.look_at_samples(motion[0], motion[1], first, min(first + PIECE, a.shape[0]))
+            self.look_up(PIECE)
+            first += PIECE
+        first = 0
+        while first < a.shape[0]:
+            self.look_between(a, motion[0], motion[1], first, min(first + PIECE, a.shape[0] - 1))
+            self.look_up(2 * PIECE)
+            first += PIECE
+        return 0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def peaks(self, a: cython.double[::1], motion: cython.double[:, ::1]) -> tuple[cython.double, cython.double]:
-        """Largest |u| and |u'| during a record, with room of two rows for the motion.
-
-        The peaks at samples are found first, so that few intervals may have a higher one inside.
-        """
+    def look_at_samples(
+        self, us: cython.double[::1], vs: cython.double[::1], first: cython.Py_ssize_t, last: cython.Py_ssize_t
+    ) -> cython.void:
+        """Raise the peaks to those at samples."""
         k: cython.Py_ssize_t
-        last: cython.Py_ssize_t = a.shape[0] - 1
-        sd: cython.double = 0.0
-        sv: cython.double = 0.0
+        sd: cython.double = self.sd
+        sv: cython.double = self.sv
+        for k in range(first, last):
+            sd, sv = max(sd, fabs(us[k])), max(sv, fabs(vs[k]))
+        self.sd, self.sv = sd, sv
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def look_between(
+        self,
+        a: cython.double[::1],
+        us: cython.double[::1],
+        vs: cython.double[::1],
+        first: cython.Py_ssize_t,
+        last: cython.Py_ssize_t,
+    ) -> cython.int:
+        """Raise the peaks to those between samples."""
+        k: cython.Py_ssize_t
+        sd: cython.double = self.sd
+        sv: cython.double = self.sv
         w: cython.double
         slope: cython.double
         size: cython.double
-        us: cython.double[::1] = motion[0]
-        vs: cython.double[::1] = motion[1]
-        self.march(a, us, vs)
-        for k in range(last + 1):
-            sd, sv = max(sd, fabs(us[k])), max(sv, fabs(vs[k]))
-        for k in range(last):
+        for k in range(first, last):
             slope = (a[k + 1] - a[k]) / self.h
             w = self.acceleration(us[k], vs[k], a[k])
             size = fabs(w) + fabs(self.quadrature(w, vs[k], slope))  # |u''| is not larger until the next sample
@@ -231,8 +307,9 @@ class Oscillator:
                 max(fabs(us[k]), fabs(us[k + 1])) + size * self.bend > sd
                 or max(fabs(vs[k]), fabs(vs[k + 1])) + size * self.sway > sv
             ) and not self.monotonic(w, vs[k], us[k + 1], vs[k + 1], a[k + 1]):
-                sd, sv = self.inside(us[k], vs[k], a[k], slope, sd, sv)
-        return sd, sv
+                self.inside(us[k], vs[k], a[k], slope)
+                sd, sv = self.sd, self.sv
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -250,16 +327,8 @@ class Oscillator:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def inside(
-        self,
-        u: cython.double,
-        v: cython.double,
-        a: cython.double,
-        slope: cython.double,
-        sd: cython.double,
-        sv: cython.double,
-    ) -> tuple[cython.double, cython.double]:
+    @cython.exceptval(-1)
+    def inside(self, u: cython.double, v: cython.double, a: cython.double, slope: cython.double) -> cython.int:
         """Raise the peaks to those between a sample with the state (u, v) and the next one.
 
         The zeros of u'', a free vibration, divide the interval into parts in which u' is monotonic.
@@ -281,17 +350,18 @@ class Oscillator:
         if not zero > 0.0:
             zero += PI / self.damped
         while low < self.h and (
-            max(fabs(line - fall * low), fabs(end)) + rest > sd or fabs(fall) + self.omega * rest > sv
+            max(fabs(line - fall * low), fabs(end)) + rest > self.sd or fabs(fall) + self.omega * rest > self.sv
         ):
+            self.look_up(WITHIN)
             high = zero if zero < self.h else self.h
             v_high = self.state(high, u, v, a, slope)[1]
-            sv = max(sv, fabs(v_high))
+            self.sv = max(self.sv, fabs(v_high))
             if (v_low < 0.0 and v_high > 0.0) or (v_low > 0.0 and v_high < 0.0):
-                sd = max(sd, fabs(self.turning(low, high, v_low, u, v, a, slope)))
+                self.sd = max(self.sd, fabs(self.turning(low, high, v_low, u, v, a, slope)))
             low, v_low = high, v_high
             zero += PI / self.damped
             rest = size * exp(-self.zeta * self.omega * low)
-        return sd, sv
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -328,36 +398,47 @@ class Oscillator:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1)
     def rotated(
         self,
         a: cython.double[:, ::1],
         turns: cython.double[:, ::1],
         motion: cython.double[:, ::1],
         peaks: cython.double[::1],
-    ) -> cython.void:
+    ) -> cython.int:
         """Raise peaks from zero to the largest |u| in every direction, with room of five rows for the motion."""
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = a.shape[1] - 1
+        directions: cython.Py_ssize_t = 2 + peaks.shape[0]
         least: cython.double
         farther: cython.double
+        self.look_up(COARSE * directions)
         self.march(a[0], motion[0], motion[1])
         self.march(a[1], motion[2], motion[3])
         for k in range(last + 1):
             motion[4, k] = hypot(motion[0, k], motion[2, k])
+            if k % PIECE == 0:
+                self.look_up(2 * PIECE)
         for k in range(min(COARSE, last + 1)):
             self.look_round(k * last // COARSE, turns, motion, peaks)
         # Where the oscillator stays closer than the smallest peak so far, it raises none.
         least = smallest(peaks)
         for k in range(last + 1):
+            if k % PIECE == 0:
+                self.look_up(PIECE)
             if motion[4, k] > least:
                 self.look_round(k, turns, motion, peaks)
                 least = smallest(peaks)
+                self.look_up(directions)
         for k in range(last):
+            if k % PIECE == 0:
+                self.look_up(4 * PIECE)
             farther = self.reach(k, a, motion)
             if max(motion[4, k], motion[4, k + 1]) + farther > least:
                 self.look_inside(k, farther, a, turns, motion, peaks)
                 least = smallest(peaks)
+                self.look_up(2 * directions)
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -391,7 +472,7 @@ class Oscillator:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1)
     def look_inside(
         self,
         k: cython.Py_ssize_t,
@@ -400,7 +481,7 @@ class Oscillator:
         turns: cython.double[:, ::1],
         motion: cython.double[:, ::1],
         peaks: cython.double[::1],
-    ) -> cython.void:
+    ) -> cython.int:
         """Raise the peaks to those between a sample and the next one."""
         j: cython.Py_ssize_t
         c: cython.double
@@ -425,7 +506,10 @@ class Oscillator:
                 size = fabs(w) + fabs(self.quadrature(w, v, slope))
                 if max(fabs(u), fabs(u1)) + size * self.bend > peaks[j] and not self.monotonic(w, v, u1, v1, a1):
                     # With an infinite velocity only the displacement decides how far the search goes.
-                    peaks[j] = self.inside(u, v, a0, slope, peaks[j], ENDLESS)[0]
+                    self.sd, self.sv = peaks[j], ENDLESS
+                    self.inside(u, v, a0, slope)
+                    peaks[j] = self.sd
+        return 0
 
 
 @cython.cfunc

@@ -1,15 +1,30 @@
-"""Values and first zeros of polynomials q[0] + q[1] t + .., t from 0 to 1. Declarations: `polynomials.pxd`."""
+"""Values and first zeros of polynomials q[0] + q[1] t + .., t from 0 to 1. Declarations: `polynomials.pxd`.
+
+Coefficients whose squares might overflow or vanish are multiplied by a power of two first, which leaves every bit of a
+zero as it is: forces have the same peaks in any unit.
+"""
 
 from math import fabs, sqrt
 
 import cython
 
 if cython.compiled:
-    from cython.cimports.libc.math import fabs, sqrt
+    from cython.cimports.libc.math import INFINITY, fabs, ilogb, ldexp, sqrt
+else:
+    from math import frexp, ldexp
+
+    INFINITY = float("inf")
+
+    def ilogb(x):
+        """The exponent of a number, as in C."""
+        return frexp(x)[1] - 1
+
 
 NEVER = cython.declare(cython.double, 2.0)
 APART = cython.declare(cython.double, 1e-9)  # between two peaks
 NOTHING = cython.declare(cython.double, 1e-18)  # of the magnitudes of all terms: one that is left out
+SMALL = cython.declare(cython.double, 1e-20)  # coefficients of sizes between these are left as they are
+LARGE = cython.declare(cython.double, 1e20)
 
 
 @cython.ccall
@@ -24,6 +39,28 @@ def value(q: cython.double[::1], terms: cython.int, t: cython.double) -> cython.
     return total
 
 
+@cython.ccall
+@cython.nogil
+@cython.exceptval(check=False)
+def unit_for(size: cython.double) -> cython.double:
+    """The power of two by which a positive size is brought near to 1."""
+    return ldexp(1.0, -max(-1000, min(1000, ilogb(size))))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def unit_of(q: cython.double[::1], shift: cython.int, terms: cython.int) -> cython.double:
+    """The power of two by which coefficients of unusual size are multiplied; 0 if they are not finite, or all zero."""
+    k: cython.int
+    size: cython.double = 0.0
+    for k in range(terms):
+        if not fabs(q[shift + k]) < INFINITY:
+            return 0.0
+        size = max(size, fabs(q[shift + k]))
+    return unit_for(size) if size > 0.0 else 0.0
+
+
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
@@ -33,6 +70,18 @@ def positive_for(p: cython.double, slope: cython.double, bend: cython.double) ->
     if slope < 0.0:
         return 2.0 * p / (root - slope)
     return (root + slope) / bend if bend > 0.0 else NEVER
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def bend_of(q: cython.double[::1], shift: cython.int, terms: cython.int) -> cython.double:
+    """A bound of the second derivative in [0, 1]."""
+    k: cython.int
+    bend: cython.double = 0.0
+    for k in range(2, terms):
+        bend += k * (k - 1) * fabs(q[shift + k])
+    return bend
 
 
 @cython.ccall
@@ -45,16 +94,23 @@ def first_fall(
 
     With |q''| <= bend, q(t + d) >= q + q' d - bend d²/2, which is positive up to the step taken: no zero is passed.
     Where the bound in [0, 1] would allow a short step only, as where q begins like t⁵, that in [0, 2t] is tried.
+    Coefficients of unusual size are changed.
     """
     k: cython.int
     p: cython.double
     slope: cython.double
     step: cython.double
     near: cython.double
-    bend: cython.double = 0.0
+    bend: cython.double = bend_of(q, shift, terms)
     t: cython.double = start
-    for k in range(2, terms):
-        bend += k * (k - 1) * fabs(q[shift + k])
+    near = fabs(q[shift]) + (fabs(q[shift + 1]) if terms > 1 else 0.0) + bend
+    if not SMALL < near < LARGE:
+        near = unit_of(q, shift, terms)
+        if near == 0.0:
+            return NEVER
+        for k in range(terms):
+            q[shift + k] *= near
+        bend = bend_of(q, shift, terms)
     while True:
         p = slope = 0.0
         for k in range(terms - 1, -1, -1):
@@ -87,8 +143,11 @@ def highest_of(
     """
     k: cython.int
     t: cython.double = 0.0
+    before: cython.double
+    apart: cython.double = APART
     when: cython.double = 0.0
     most: cython.double
+    unit: cython.double = 1.0
     sign: cython.double = 1.0 if one_sided else 0.0
     size: cython.double = 0.0
     for k in range(terms):
@@ -96,11 +155,18 @@ def highest_of(
             sign = 1.0 if q[k] > 0.0 else -1.0 if q[k] < 0.0 else 0.0
         q[k] *= sign
         size += fabs(q[k]) if k > 0 else 0.0
+    if not SMALL < size < LARGE:
+        unit, size = unit_of(q, 0, terms), 0.0
+        if unit == 0.0:
+            return q[0] if one_sided else fabs(q[0]), 0.0
+        for k in range(terms):
+            q[k] *= unit
+            size += fabs(q[k]) if k > 0 else 0.0
     while terms > 1 and fabs(q[terms - 1]) <= NOTHING * size:
         terms -= 1
     most = q[0] if one_sided else fabs(q[0])
     while t < stop and terms > 1:
-        t += APART
+        before = t = t + apart
         sign = 0.0
         for k in range(terms - 1, 0, -1):
             sign = sign * t + k * q[k]
@@ -108,8 +174,9 @@ def highest_of(
         for k in range(1, terms):
             slope[k - 1] = sign * k * q[k]
         t = min(first_fall(slope, 0, terms - 1, t, stop), stop)
+        apart = APART if t > before else 2.0 * apart  # where all is rounding, no more than some steps are taken
         size = value(q, terms, t)
         size = size if one_sided else fabs(size)
         if size > most:
             most, when = size, t
-    return most, when
+    return most / unit, when

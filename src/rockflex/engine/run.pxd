@@ -15,8 +15,7 @@ cdef class Run:
     cdef readonly bint ended
     cdef public object watch
     cdef public long long limit
-    cdef int stretch  # work without a look at Ctrl-C
-    cdef long long pause  # the work at which the run looks up next
+    cdef long long stretch  # work without a look at Ctrl-C
     cdef readonly str failure
     cdef bint failed
     cdef Py_ssize_t reached  # samples of this call of `advance` that have passed
@@ -66,6 +65,7 @@ cdef class Run:
     cdef void choose(self, int which) noexcept nogil
     cdef int follow_all(self, Batch batch, bint history) except -1 nogil
     cdef int proceed(self, const double[::1] ground, const double[::1] rise, bint history) except -1 nogil
+    cdef bint overflows(self) noexcept nogil
     cdef int coast_over(self, long long samples, bint history) except -1 nogil
     cdef int advance_over(self, const double[::1] a, const double[::1] v, double[:, ::1] states) except -1 nogil
     cdef double rise_at(self, const double[::1] v, int i) noexcept nogil

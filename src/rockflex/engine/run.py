@@ -5,7 +5,7 @@ polynomials give the first event to rounding; then the state jumps, and the next
 sample. Declarations: `run.pxd`.
 """
 
-from math import isfinite
+from math import fabs, isfinite
 
 import cython
 import numpy as np
@@ -20,26 +20,27 @@ from rockflex.foundation.errors import InputError
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
-    from cython.cimports.libc.math import isfinite
+    from cython.cimports.libc.math import fabs
     from cython.cimports.rockflex.engine.batch import Batch
     from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
-    from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
+    from cython.cimports.rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases
     from cython.cimports.rockflex.engine.rest import Fading
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
     from rockflex.engine.flow import Flow
     from rockflex.engine.journal import Journal
-    from rockflex.engine.loops_twin import ASKED, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
+    from rockflex.engine.loops_twin import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
     from rockflex.engine.series import Series
 
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
-STRETCH = cython.declare(cython.int, 1 << 25)  # samples, or what counts like them, without a look at Ctrl-C: some
-PER_SAMPLE = cython.declare(cython.int, 64)  # 50 ms; divided by this and by n²/8
+STRETCH = cython.declare(cython.longlong, 1 << 25)  # between two looks at Ctrl-C, some 50 ms: what samples take is
+PER_SAMPLE = cython.declare(cython.longlong, 64)  # this and a quarter of the entries of its products
 MEMORY = cython.declare(cython.longlong, 64_000_000)  # bytes of tables in a run, if it does not say otherwise
+IMMENSE = cython.declare(cython.double, 1e290)  # in any unit: no motion is as large
 KEPT = cython.declare(cython.longlong, 1_000_000)  # bytes of room that are kept for the next history
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 
@@ -80,7 +81,7 @@ class Run:
         self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
         self.used, self.clock, self.memory = np.zeros(16, dtype=np.int64), 0, MEMORY
         self.n, self.outputs, self.states = system.layout.size, len(system.outputs), up8(system.layout.size + 2)
-        self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
+        self.stretch = STRETCH
         one_sided = np.zeros(up8(max(1, self.outputs)))
         one_sided[[list(system.outputs).index(name) for name in system.one_sided]] = 1.0
         self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
@@ -94,14 +95,7 @@ class Run:
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
-        self.phase_bytes, self.failed, self.first, self.pause, self.fading, self.shakes = (
-            0,
-            False,
-            0,
-            0,
-            Fading(),
-            False,
-        )
+        self.phase_bytes, self.failed, self.first, self.fading, self.shakes = 0, False, 0, Fading(), False
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -121,7 +115,7 @@ class Run:
 
     def begin(self):
         """Begin anew from the same state."""
-        self.pause = min(self.limit + 1, max(self.pause - self.peaks_.work(), 0))
+        self.peaks_.pause_at(min(self.limit + 1, max(self.peaks_.pause() - self.peaks_.work(), 0)))
         if self.failed:
             with cython.gil:
                 self.failure = ""
@@ -196,13 +190,13 @@ class Run:
         """Memory of phases, history and room, bytes."""
         room = [self.scratch, self.phases.rows, self.phases.found, self.series.series]
         more = sum([mirror.nbytes for mirror in self.mirrors]) + sum([each.nbytes for each in room])
-        return self.phase_bytes + self.journal.size + self.peaks_.size + more
+        return self.phase_bytes + self.journal.size() + self.peaks_.size + more
 
     def trim(self):
         """Give back the room of a long history, which must have been read; that of a short one serves the next run."""
-        if self.scratch.nbytes > KEPT:
+        if 8 * self.n * self.scratch.shape[0] > KEPT:
             self.scratch = self.unkept
-        if self.journal.size > KEPT:
+        if self.journal.size() > KEPT:
             self.journal.clear()
 
     def enter(self, key):
@@ -253,6 +247,7 @@ class Run:
             self.used = np.concatenate((self.used, np.zeros(place, dtype=np.int64)))
         self.series.widen(len(phase.events))
         self.peaks_.widen(tables.rows)
+        self.stretch = min(self.stretch, STRETCH // (PER_SAMPLE + self.n * (self.n + tables.rows) // 4))
         self.journal.meet(place, phase.events)
         return place
 
@@ -332,7 +327,6 @@ class Run:
     def proceed(self, ground, rise, history):
         """Advance over the samples of an acceleration that has been checked."""
         i: cython.int
-        k: cython.int
         last: cython.int = ground.shape[0] - 1
         if self.failed:
             with cython.gil:
@@ -350,13 +344,20 @@ class Run:
             i = self.advance_over(ground, rise, self.unkept)
         self.passed += i
         self.reached = 0
-        for k in range(self.n):
-            if not isfinite(self.y[k]):
-                with cython.gil:
-                    self.failure = "growth"
-                    raise failures.growth(self.key, self.time)
+        if self.overflows():
+            with cython.gil:
+                self.failure = "growth"
+                raise failures.growth(self.key, self.time)
         self.failed = False
         return 0
+
+    def overflows(self):
+        """Whether a state or a peak is so large that bounds of rows may not be numbers."""
+        k: cython.int
+        for k in range(max(self.n, self.outputs)):
+            if (k < self.n and not fabs(self.y[k]) < IMMENSE) or (k < self.outputs and not self.high[k] < IMMENSE):
+                return True
+        return False
 
     def coast(self, samples: int, *, history: bool = False) -> None:
         """Advance without excitation over so many samples, in the same pieces as `settle`."""
@@ -375,17 +376,16 @@ class Run:
         i: cython.int = 0
         j: cython.int
         start: cython.int
-        stop: cython.int
         last: cython.int = a.shape[0] - 1
         self.flow.resume(history)
         if history and self.journal.wants(a[0], self.rise_at(v, 0)):
             self.journal.keep(self.passed, a[0], self.rise_at(v, 0), self.y, self.now)
         while i < last and not self.ended:
-            start, stop = i, min(last, (i // self.stretch + 1) * self.stretch)
+            start = i
             if self.phases.nonlinear(self.now):
-                i = self.flow.march(self.now, a, v, i, stop, states)
+                i = self.flow.march(self.now, a, v, i, last, states)
             else:
-                i = self.phases.march(self.now, a, v, i, stop, self.y, self.peaks_, states)
+                i = self.phases.march(self.now, a, v, i, last, self.y, self.peaks_, states)
             if i > start:
                 self.sizes[:] = 0.0
             if history:
@@ -395,8 +395,8 @@ class Run:
             if self.peaks_.looks():
                 self.traverse(i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history)
                 i += 1
-            elif i < stop:
-                self.search(a, v, False)
+            elif i < last and self.peaks_.count() + BLOCK > CANDIDATES and not self.phases.nonlinear(self.now):
+                self.search(a, v, False)  # otherwise it has paused to look up, which must not change what is counted
             self.look_up()
         self.search(a, v, True)
         return i
@@ -407,7 +407,7 @@ class Run:
 
     def look_up(self):
         """After a stretch of work, see whether the run must end."""
-        if self.peaks_.work() >= self.pause:
+        if self.peaks_.work() >= self.peaks_.pause():
             with cython.gil:
                 PyErr_CheckSignals()
                 if self.watch is not None:
@@ -415,7 +415,7 @@ class Run:
                 if self.peaks_.work() > self.limit:
                     self.failure = "work"
                     raise failures.limit(self.limit)
-                self.pause = min(self.limit + 1, self.peaks_.work() + self.stretch)
+                self.peaks_.pause_at(min(self.limit + 1, self.peaks_.work() + self.stretch))
         return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:
@@ -578,6 +578,7 @@ class Run:
         """Search the samples that may have higher peaks: at the end, or if there is no room for more."""
         r: cython.int
         i: cython.int
+        u: cython.double
         kept: cython.int = self.series.sift()
         if kept == 0 or (not finish and kept <= CANDIDATES // 2):
             return 0
@@ -586,8 +587,13 @@ class Run:
             i = self.series.candidate(r)
             self.load(self.series.phase_of(r))
             self.n_searched += 1
-            self.look_up()
-            self.series.search(r, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), self.passed + i)
+            self.series.begin_search(r)
+            u = 0.0
+            while u < 1.0:
+                self.look_up()
+                u = self.series.search(
+                    r, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), self.passed + i, u
+                )
         self.y[:] = self.before
         self.peaks_.keep(0)
         return 0

@@ -175,17 +175,18 @@ class Series:
         """The place of its phase."""
         return cython.cast(cython.int, self.peaks.candidates[r, 0])
 
-    def search(self, r, start, end, v, sample):
-        """Raise the peaks to those within such a sample; the state is changed."""
-        u: cython.double = 0.0
-        part: cython.double
+    def begin_search(self, r):
+        """Take the state at the start of such a sample."""
         rows: cython.double[:, ::1] = self.peaks.candidates
         self.y[: self.n] = rows[r, 2 : 2 + self.n]
-        while u < 1.0:
-            part = self.expand(self.phase_of(r), start, end, v, u)
-            self.raise_peaks(1.0, sample + u, rows[r, 2 + self.n :])
-            self.skip()
-            u = u + part if part < 1.0 - u else 1.0
+
+    def search(self, r, start, end, v, sample, u):
+        """Raise the peaks to those in a part of such a sample, and move the state to its end; the place of the next."""
+        part: cython.double = self.expand(self.phase_of(r), start, end, v, u)
+        rows: cython.double[:, ::1] = self.peaks.candidates
+        self.raise_peaks(1.0, sample + u, rows[r, 2 + self.n :])
+        self.skip()
+        return u + part if part < 1.0 - u else 1.0
 
     def raise_peaks(self, stop, sample, highest):
         """Raise the peaks to those of the expanded motion up to `stop`, none of which is higher than its `highest`."""

@@ -13,7 +13,9 @@ import numpy as np
 
 from rockflex.engine.field import Compiled, Field, Function, Jump
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import masked_count
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.shown import shown
 
 Key = Hashable
 MAX_STATES, MAX_ROWS = 1000, 4096  # as in march.h
@@ -338,7 +340,7 @@ class System:
             )
         listed: Any = found.events
         if not isinstance(listed, tuple | list):
-            raise InputError(f"{place}events must be a tuple, but {listed!r} was given.")
+            raise InputError(f"{place}events must be a tuple, but {shown(listed)} was given.")
         events = _checked_events(place, found.events, n, self.count)
         if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
@@ -352,7 +354,7 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
     found: Any = phase.field
     if not isinstance(found, Field):
         if not callable(found):
-            raise InputError(f"{place}field must be a Field or a function, but {found!r} was given.")
+            raise InputError(f"{place}field must be a Field or a function, but {shown(found)} was given.")
         function: Any = found
         address = _address_of(function)
         found = Function(function, n) if address is None else Compiled(function, address, n)
@@ -413,7 +415,7 @@ def _of(part: Any, place: int, names: dict[str, int]) -> Any:
 def _checked_events(place: str, events: Sequence[Any], n: int, count: int) -> tuple[Event, ...]:
     for event in events:
         if not isinstance(event, Event):
-            raise InputError(f"{place}events must be of the class Event, but {event!r} was given.")
+            raise InputError(f"{place}events must be of the class Event, but {shown(event)} was given.")
     places = [f"{place}event {event.name!r}: " for event in events]
     found = _stacked(places, events, EVENT_NUMBERS, n, count)
     for here, event, numbers in zip(places, events, found, strict=True):
@@ -425,7 +427,7 @@ def _checked_events(place: str, events: Sequence[Any], n: int, count: int) -> tu
         if rest is None:
             continue
         if not isinstance(rest, Rest):
-            raise InputError(f"{here}rest must be of the class Rest, but {rest!r} was given.")
+            raise InputError(f"{here}rest must be of the class Rest, but {shown(rest)} was given.")
         if callable(event.jump):
             raise InputError(f"{here}a jump that is a function says itself what follows, so that there can be no rest.")
         if isinstance(event.jump, Jump):
@@ -484,7 +486,8 @@ def stacked_array(name: str, values: Any, shape: tuple[int, ...], count: int, *,
 
 
 def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True) -> Array:
-    """Return a copy in double precision, and refuse what has another shape or is not finite."""
+    """Return a copy in double precision, and refuse what has another shape, is masked or is not finite."""
+    _check_unmasked(name, values)
     if type(values) is np.ndarray and values.dtype == float:
         found = values.copy()
     else:
@@ -499,8 +502,14 @@ def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True
     return found
 
 
+def _check_unmasked(name: str, values: Any) -> None:
+    if masked_count(values):
+        raise InputError(f"{name} must not have masked values: leave them out or fill them first.")
+
+
 def acceleration(values: Any) -> Array:
     """Return an acceleration as the loops need it."""
+    _check_unmasked("the acceleration", values)
     found = np.asarray(values)
     if found.ndim != 1 or found.size == 0:
         raise InputError(f"The acceleration must be one row of at least one sample, but {found.shape} was given.")

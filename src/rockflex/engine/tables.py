@@ -22,7 +22,7 @@ MIRRORS = 4  # phases that may have a mirror image yet to come
 # Two threads that prepare at once pass the interpreter's lock to and fro, in every second call of NumPy.
 PREPARING = RLock()
 AT_ONCE = 4096  # entries of rows at several places of a block that fit into the cache, before they are doubled
-VAGUE = 1e100  # a bound that is as good as none, and does not overflow
+VAGUE = 1e300  # a bound that is as good as none, and does not overflow
 
 
 class Tables(NamedTuple):

@@ -2,23 +2,26 @@
 
 import math
 import operator
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from numbers import Real
-from typing import Any, SupportsIndex, TypeVar
+from typing import Any, SupportsIndex, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.shown import shown
+from rockflex.foundation.shown import number_with_noun, shown
 
 T = TypeVar("T")
 
 MOST_STORIES, MOST_MODES = 1000, 200
 """Limits of stories of a frame and modes of a continuous structure: these take seconds and about 100 MB."""
 
+_HOLDERS = list, tuple, np.ma.MaskedArray
+_NO_NUMBERS = bool, np.bool_, str, bytes, bytearray, complex, np.complexfloating
+_IN_WORDS = {"c": "complex numbers", "S": "texts", "U": "texts", "b": "booleans"}
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 
 
@@ -48,10 +51,12 @@ def checked_in_range(
     return number
 
 
-def checked_finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Array:
+def checked_finite_vector(
+    name: str, values: ArrayLike, unit: str, *, field: str | None = None, booleans: bool = False
+) -> Array:
     """Return `values` as a read-only float64 array (n,) of finite numbers; `field` as in `checked_in_range`."""
     field = field or name
-    array = float_array(values)
+    array = float_array(values, booleans=booleans)
     if array is None:
         measured = f" in {unit}" if unit else ""
         raise InputError(
@@ -191,13 +196,34 @@ def checked_finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -
     return array
 
 
-def float_array(values: ArrayLike) -> Array | None:
-    """Return a float64 copy of real numbers; None for ragged rows, complex numbers, dates, and too large numbers."""
+def float_array(values: ArrayLike, *, booleans: bool = False) -> Array | None:
+    """Return a float64 copy of real numbers; None for anything else.
+
+    That is ragged rows, complex numbers, dates, texts, too large numbers, masked values, and booleans unless they are
+    asked for.
+    """
+    strange = (str, bytes) if booleans else (str, bytes, bool, np.bool_)
     try:
+        if masked_count(values):
+            return None
         given = np.asarray(values)
-        return None if given.dtype.kind in "cmM" else np.array(given, dtype=np.float64)
+        if given.dtype.kind in ("cmMSU" if booleans else "cmMSUb"):
+            return None
+        if given.dtype.kind == "O" and any(isinstance(each, strange) for each in given.flat):
+            return None
+        return np.array(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError, RecursionError):
         return None
+
+
+def masked_count(values: object, depth: int = 2) -> int:
+    """Return how many values of a masked array, or of those in rows, are masked, which NumPy forgets in silence."""
+    if isinstance(values, np.ma.MaskedArray):
+        return int(np.ma.count_masked(values))
+    if depth == 0 or not isinstance(values, list | tuple):
+        return 0
+    held = (each for each in cast("Sequence[object]", values) if isinstance(each, _HOLDERS))
+    return sum(masked_count(each, depth - 1) for each in held)
 
 
 def checked_instance(name: str, value: Any, kind: type[T]) -> T:
@@ -214,11 +240,14 @@ def is_one_of(value: object, words: Collection[str]) -> bool:
 
 
 def _type_in_words(values: object) -> str:
-    name = type(values).__name__
+    name, masked = type(values).__name__, masked_count(values)
+    if masked:
+        mend = "leave them out (.compressed()) or fill them (.filled(number)) first"
+        return f"{name} with {number_with_noun(masked, 'masked value')} ({mend})"
     try:
         given = np.asarray(values)
-        if given.dtype.kind == "c":
-            return f"{name} of complex numbers"
+        if given.dtype.kind in _IN_WORDS and not isinstance(values, str | bytes):
+            return f"{name} of {_IN_WORDS[given.dtype.kind]}"
         np.array(given, dtype=np.float64)
     except OverflowError:
         return f"{name} with a number too large for double precision"
@@ -244,8 +273,14 @@ def _checked_number(name: str, value: float, unit: str) -> float:
 
 
 def _float_or_none(value: Any) -> float | None:
-    """Return a number as a float; None for anything else, complex numbers, and numbers too large for a float."""
-    if isinstance(value, complex | np.complexfloating) or (isinstance(value, np.ndarray) and value.ndim):
+    """Return a number as a float; None for anything else, and numbers too large for a float.
+
+    Booleans and texts are no numbers, nor are complex numbers and arrays of them.
+    """
+    if isinstance(value, np.ndarray):
+        array = cast("NDArray[Any]", value)
+        value = None if array.ndim or isinstance(array, np.ma.MaskedArray) else array[()]
+    if isinstance(value, _NO_NUMBERS):
         return None
     try:
         return float(value)

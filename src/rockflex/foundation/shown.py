@@ -2,12 +2,18 @@
 
 import math
 import os
+import re
 import reprlib
 from collections.abc import Sequence
 from itertools import islice
 
 WIDTH = 160  # most characters of a value
 FEW = 8  # texts that are all shown
+# Objects without a repr of their own, and functions: a name, and where they are in memory, which tells nobody anything.
+_AT_ADDRESS = re.compile(
+    r"<(?:function )?+([^\s<]*+(?:<locals>[^\s<]*+)*+(?:<lambda>)?+)(?: object)?+ at 0x[0-9A-Fa-f]++>"
+)
+_ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]++(?=>)")
 
 
 def shown(value: object) -> str:
@@ -58,9 +64,23 @@ class _ShortRepr(reprlib.Repr):
         more = ["..."] if len(x) > self.maxdict else []
         return f"{{{', '.join([*items, *more])}}}" if level > 0 else "{...}"
 
+    def repr_instance(self, x: object, level: int) -> str:
+        """Return the repr with names in the place of memory addresses."""
+        del level
+        try:
+            text = repr(x)
+        except Exception:
+            return f"<{type(x).__name__} instance>"
+        text, half = _ADDRESS.sub("", _AT_ADDRESS.sub(_own_name, text)), self.maxother // 2 - 2
+        return text if len(text) <= self.maxother else f"{text[:half]}...{text[-half:]}"
+
     def repr_int(self, x: int, level: int) -> str:
         digits = round(x.bit_length() * math.log10(2.0))  # Python does not convert more than a few thousand digits
         return f"an integer of about {digits} digits" if digits > self.maxlong else super().repr_int(x, level)
+
+
+def _own_name(found: re.Match[str]) -> str:
+    return found[1].rpartition(".")[2]
 
 
 _SHORT = _ShortRepr()

@@ -39,7 +39,7 @@ def log_measures(im: ArrayLike, name: str = "im") -> Array:
 
 def boolean_column(name: str, values: ArrayLike) -> Bools:
     """Boolean array of a column of true and false, or of 1 and 0."""
-    numbers = float_array(values)
+    numbers = float_array(values, booleans=True)
     if numbers is None:
         raise InputError(f"{name} must hold True or False for every run. Leave out the runs in which it is missing.")
     if numbers.ndim != 1:

@@ -318,7 +318,7 @@ def fit_stripes(
 
 
 def _checked_stripe_counts(name: str, values: ArrayLike, least: int) -> Array:
-    numbers = checked_finite_vector(name, values, "runs")
+    numbers = checked_finite_vector(name, values, "runs", booleans=True)  # of one run each
     bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
     if bad.size:
         raise InputError(

@@ -215,9 +215,10 @@ class Task:
 
     def work(self) -> EstimatedWork:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
-        speed = (
-            float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt if self.cost_model.flow else 0.0
-        )
+        speed = 0.0
+        if self.cost_model.flow:
+            with np.errstate(over="ignore", invalid="ignore"):  # it is endless work then
+                speed = float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt
         samples = self.record.size + self._free / self.dt
         return self.cost_model.work(samples, self.dt, speed, history=self.history, fastest=self.fastest)
 

@@ -28,6 +28,7 @@ from rockflex.models._impact import (
 from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
+from rockflex.models._state_checks import check_states
 from rockflex.models._state_layout import HEADER, RISE
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
@@ -99,6 +100,7 @@ def save_response(
         arrays |= {f"floors.{name}": getattr(floors, name) for name in FLOOR_PEAKS}
     if history is not None:
         model = history.model
+        check_states(model, history.states)  # what could not be read again is not written
         scalars["lifts"] = model.lifts
         scalars["law"] = _impact_law_to_file(model.law)
         scalars["missing_mass"] = model.missing_mass
@@ -156,6 +158,7 @@ def _response_from_file(scalars: dict[str, Any], arrays: dict[str, Any], kinds: 
         if scalars["format"] != FORMAT:  # without vertical acceleration
             states = np.insert(states, RISE, 0.0, axis=1)
         history = History(_model_from_file(scalars, arrays), states)
+        check_states(history.model, history.states)
     later = _later(scalars, history) if scalars["format"] == OLDEST else _of_elements(arrays, history)
     if scalars["format"] != FORMAT:
         later |= _of_ground(scalars, history)
@@ -229,7 +232,7 @@ def _impact_law_to_file(law: ImpactLaw) -> dict[str, Any]:
     name = type(law).__name__
     if name in LAWS and type(law) is LAWS[name]:
         return {"law": name, **asdict(cast("Any", law))}
-    return {"law": "ForgottenLaw", "description": repr(law), "keeps": str(law.keeps), "loses": str(law.loses)}
+    return {"law": "ForgottenLaw", "description": shown(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
 
 def _impact_law_from_file(parameters: dict[str, Any]) -> ImpactLaw:

@@ -100,7 +100,7 @@ class RitzShapes(Value):
         rows: list[Array] = []
         for name in ("value", "slope", "curvature"):
             with np.errstate(all="ignore"):  # values that are not finite are rejected below
-                array = np.asarray(getattr(self, name)(z), dtype=np.float64)
+                array = np.ma.asarray(getattr(self, name)(z), dtype=np.float64).filled(np.nan)
             if array.ndim != 2 or array.shape[0] != z.size or (rows and array.shape != rows[0].shape):
                 expected = rows[0].shape if rows else f"({z.size}, n_shapes)"
                 raise InputError(

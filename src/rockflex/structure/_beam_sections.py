@@ -83,7 +83,8 @@ class BeamProfile(Value):
         flat = z.ravel()
         try:
             with np.errstate(all="ignore"):  # values that are not finite are rejected below
-                values = np.broadcast_to(np.asarray(self.function(flat), dtype=np.float64), flat.shape)
+                found = np.ma.asarray(self.function(flat), dtype=np.float64).filled(np.nan)  # masked values are missing
+                values = np.broadcast_to(found, flat.shape)
         except (TypeError, ValueError) as error:
             raise InputError(
                 f"{self.name} must return one number for each height, an array of shape {flat.shape}, but it did not: "

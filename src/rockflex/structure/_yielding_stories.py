@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import real_or_nan
+from rockflex.foundation.checks import masked_count, real_or_nan
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
@@ -131,7 +131,7 @@ def _one_value_per_story(name: str, given: ArrayLike, count: int) -> Array:
     found = np.array([real_or_nan(each) for each in np.atleast_1d(np.asarray(given, dtype=object)).ravel()])
     if found.size == 1:
         found = np.full(count, found[0])
-    if found.size != count or np.isnan(found).any():
+    if found.size != count or np.isnan(found).any() or masked_count(given):
         raise InputError(
             f"{name} must be one number, or one for each of the {count} stories from the bottom to the top, but "
             f"{shown(given)} was given.",
