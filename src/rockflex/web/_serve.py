@@ -78,7 +78,7 @@ def serve(
 
     import uvicorn
 
-    from rockflex.web._connections import patient_protocol
+    from rockflex.web._connections import MAX_CONNECTIONS, patient_protocol
 
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     # Windows would give a port to several servers, and the others to those of which none listens yet.
@@ -94,7 +94,8 @@ def serve(
         ) from error
     config = uvicorn.Config(
         app, log_level="warning", http=patient_protocol(), ws="none", timeout_keep_alive=KEEP_ALIVE,
-        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False, root_path=root_path.rstrip("/"),
+        limit_concurrency=MAX_CONNECTIONS, timeout_graceful_shutdown=GRACE, server_header=False,
+        root_path=root_path.rstrip("/"),
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
