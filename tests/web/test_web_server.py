@@ -504,6 +504,19 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly() -> None:
 
 
 @pytest.mark.slow
+def test_it_stops_cleanly_while_it_draws(client) -> None:
+    with served(*RUN) as (process, port):
+        other = type(client)(f"http://127.0.0.1:{port}")
+        token = other.ask("/api/file/animation", client.state())["token"]
+        while json.loads(other.request(f"/api/file/{token}")[2])["done"] < 2:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=HANG)
+    assert process.returncode == 0
+    assert "terminate" not in said
+
+
+@pytest.mark.slow
 def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping(tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
