@@ -280,6 +280,12 @@ def test_what_is_replaced_is_told(tmp_path, capsys):
     assert "3 files, b.txt, mine.txt, summary.json" in capsys.readouterr().err
 
 
+def test_a_file_that_is_replaced_is_told(tmp_path):
+    assert output.written_remark(tmp_path / "a.html") == f"Written to {tmp_path / 'a.html'}"
+    (tmp_path / "a.html").touch()
+    assert "in place of an earlier file" in output.written_remark(tmp_path / "a.html")
+
+
 def test_a_temporary_folder_of_a_command_at_work_stays(tmp_path):
     with output.staged_output_folder(tmp_path, {"versions": {}}, force=False):
         (at_work,) = tmp_path.iterdir()

@@ -523,7 +523,9 @@ def test_an_earlier_page_stays_without_force(tmp_path):
     page.write_text("mine")
     refused(f"--report {page} exists. Give another name, or --force to replace it.", "--report", page)
     assert page.read_text() == "mine"
-    assert invoke_report("--report", page, "--force").exit_code == 0
+    done = invoke_report("--report", page, "--force")
+    assert done.exit_code == 0
+    assert f"{page}, in place of an earlier file" in done.stderr
     assert page.read_text("utf-8").startswith("<!DOCTYPE html>")
 
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 import rockflex as rf
-from rockflex.structure import STEELS, STRANDS
+from rockflex.structure._devices import STEELS, STRANDS
 
 KIP, INCH = 4448.2216, 0.0254
 SOIL = {"shear_modulus": 30e6, "poisson_ratio": 0.3}

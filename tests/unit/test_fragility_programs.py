@@ -230,6 +230,11 @@ def test_nrml_refuses_what_it_cannot_say(tmp_path):
             rf.write_nrml(tmp_path / "m.xml", wide, "PGV", LEVELS)
 
 
+def test_an_id_that_a_spreadsheet_would_compute_is_a_text(tmp_path):
+    (row,) = rows(rf.write_pelicun(tmp_path / "f.csv", {"-A1": LOGNORMAL}, "PGV", LEVELS))
+    assert row["ID"] == "'-A1"
+
+
 def test_pelicun_refuses_what_it_cannot_say(tmp_path):
     with pytest.raises(InputError, match=r"measure must be PGA, PGV or SA\(T\), .* but IA was given"):
         rf.write_pelicun(tmp_path / "f.csv", {"p": LOGNORMAL}, "IA", LEVELS)

@@ -3,6 +3,8 @@
 import csv
 import io
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.cli._app import app
 from rockflex.foundation.csv import table_as_csv
+from rockflex.structure.file import read_toml_file
 
 PULSE = rf.ricker_pulse(4.0, 0.6)
 
@@ -64,6 +67,50 @@ def test_a_link_stays_and_its_file_is_replaced(suffix, there, response, tmp_path
     writers(response)[suffix](link)
     assert link.is_symlink()
     assert target.stat().st_size > 100
+
+
+WRITES = """
+import os, sys, time
+from pathlib import Path
+from rockflex.foundation.files import writing_atomically
+
+with writing_atomically(Path(sys.argv[1])) as temporary:
+    temporary.write_text("half")
+    print("at work", flush=True)
+    time.sleep(600)
+"""
+
+
+def test_what_a_killed_process_left_goes_and_that_of_a_living_one_stays(tmp_path):
+    if os.name == "nt":
+        pytest.skip("whether a process runs cannot be asked there")
+    target, other = tmp_path / "a[1].svg", tmp_path / "a[1].svg.svg"
+    running = [
+        subprocess.Popen([sys.executable, "-c", WRITES, str(path)], stdout=subprocess.PIPE, text=True)
+        for path in (target, target, other)
+    ]
+    try:
+        for each in running:
+            assert each.stdout.readline() == "at work\n"
+        for each in (running[0], running[2]):
+            each.kill()
+            each.wait()
+        rf.save_figure(rf.plot_motion(PULSE), target)
+        left = sorted(path.name for path in tmp_path.iterdir())
+        assert len(left) == 3
+        assert left[0].startswith(f".{target.name}.{running[1].pid}-")
+        assert left[1].startswith(f".{other.name}.{running[2].pid}-")  # of another file
+        assert left[2] == target.name
+    finally:
+        for each in running:
+            each.kill()
+            each.communicate()
+
+
+@pytest.mark.parametrize("read", [rf.read_structure, rf.load_study, lambda path: read_toml_file(path, "limits")])
+def test_a_null_character_in_a_path_is_an_input_error(read):
+    with pytest.raises(rf.InputError, match="null"):
+        read(Path("a\0.toml"))
 
 
 HOSTILE = ("=1+1", "+1+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1", "\r=1")

@@ -16,7 +16,7 @@ from doc_blocks import Block, blocks_of, run_blocks
 from own_package_site import path_with, run
 from rockflex.fragility import LIMIT_STATES
 from rockflex.motion import FORMATS, MEASURES
-from rockflex.studies import KINDS
+from rockflex.studies._study_kind import KINDS
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## Recipes")[2]

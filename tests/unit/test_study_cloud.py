@@ -12,10 +12,10 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values, make_frame
-from rockflex.studies import KINDS
 from rockflex.studies._result_tables import PivotLifts, count_pivot_lifts
 from rockflex.studies._run_matrix import record_checksums, record_groups, study_matrix
 from rockflex.studies._run_plan import run_plan
+from rockflex.studies._study_kind import KINDS
 from rockflex.studies.cloud import CloudPlan, CloudStudy, run_cloud
 
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)

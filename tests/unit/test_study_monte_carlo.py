@@ -11,7 +11,6 @@ import pytest
 from scipy import stats
 
 import rockflex as rf
-from rockflex.studies import KINDS, StudyFindings
 from rockflex.studies._random_variables import (
     RandomVariables,
     formula_value,
@@ -20,6 +19,7 @@ from rockflex.studies._random_variables import (
     uniform_draws,
 )
 from rockflex.studies._run_plan import run_plan
+from rockflex.studies._study_kind import KINDS, StudyFindings
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "controlled_rocking_walls.toml"
 G = 9.81

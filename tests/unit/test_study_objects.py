@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from own_study import FRAME, OwnBar, Tower, own_ground, random_frame, roof
-from rockflex.studies import KINDS
+from rockflex.studies._study_kind import KINDS
 from rockflex.studies.design._design_study import stored_design_search
 
 SUITE = rf.load_suite("fema-p695-far-field")[:3]

@@ -15,8 +15,9 @@ from builders import frame_values
 from rockflex import InputError
 from rockflex.engine.loops import LEVEL as VECTOR_LEVEL
 from rockflex.structure.file._structure_entry import StructureEntry
-from rockflex.studies import KINDS, StudyFindings, _run_plan
+from rockflex.studies import _run_plan
 from rockflex.studies._plan import ChunkedPlan
+from rockflex.studies._study_kind import KINDS, StudyFindings
 from rockflex.studies.spec import StudySpec
 
 

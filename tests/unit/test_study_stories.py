@@ -64,7 +64,7 @@ def test_limits_of_a_study_are_reported_and_checked_before_any_run():
     limits = ["max_ductility > 4", "max_residual_drift_ratio > 0.002", 0.01]
     study = rf.CloudStudy(structures=[ENTRY], records=RECORDS, scales=[0.5, 1.0, 2.0], limits=limits)
     runs = rf.run_study(study)
-    from rockflex.studies import KINDS, StudyFindings
+    from rockflex.studies._study_kind import KINDS, StudyFindings
 
     found = StudyFindings()
     KINDS["cloud"].report(study, runs, found)

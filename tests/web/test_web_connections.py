@@ -5,6 +5,7 @@ import socket
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import pytest
 import uvicorn
@@ -58,6 +59,40 @@ def test_half_a_head_does_not_keep_its_place(port) -> None:
         each.close()
 
 
+@pytest.mark.parametrize(
+    ("parts", "pause"),
+    [
+        ((WHOLE[:30],), 0.0),
+        ((WHOLE,), 0.0),  # and then nothing
+        ((b"POST /api/upload HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99\r\n\r\n", b"."), 0.2),  # answered early
+    ],
+    ids=["half a head", "idle", "half a body"],
+)
+def test_connections_that_wait_leave_places_to_others(port, monkeypatch, parts, pause) -> None:
+    monkeypatch.setattr("rockflex.web._connections.HEAD_TIMEOUT", HANG)
+    monkeypatch.setattr("rockflex.web._connections.MAX_WAITING", 3)
+    held = [socket.create_connection(("127.0.0.1", port), timeout=HANG) for _ in range(8)]
+    for part in parts:
+        for each in held:
+            with suppress(OSError):  # it was closed
+                each.sendall(part)
+        time.sleep(pause)
+    time.sleep(0.2)
+    assert answered(port, WHOLE).startswith(b"HTTP/1.1 200")
+    for each in held:
+        each.close()
+
+
+def test_a_body_that_never_ends_does_not_keep_its_place_after_the_answer(port) -> None:
+    head = b"POST /api/upload HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"  # of an unknown type
+    with socket.create_connection(("127.0.0.1", port), timeout=5) as connection:
+        connection.sendall(head)
+        assert connection.recv(4096).startswith(b"HTTP/1.1 415")
+        connection.sendall(b".")
+        while connection.recv(4096):
+            pass
+
+
 def test_a_head_in_parts_and_a_slow_body_are_answered(port) -> None:
     assert answered(port, WHOLE[:30], WHOLE[30:], pause=0.1).startswith(b"HTTP/1.1 200")
     head = b"POST /api/state HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 2\r\n\r\n"
@@ -97,6 +132,38 @@ def test_bodies_are_bounded_together_and_by_visitor(monkeypatch) -> None:
         await request("c", 6 * FREE_BYTES)
 
     with ThreadPoolExecutor(1) as pool:  # a browser of other tests may have its event loop in this thread
+        pool.submit(lambda: asyncio.run(all_of_them())).result()
+
+
+def test_one_visitor_leaves_connections_to_others(monkeypatch) -> None:
+    monkeypatch.setattr("rockflex.web._connections.MAX_REQUESTS_OF_ONE", 2)
+
+    async def all_of_them():
+        free = asyncio.Event()
+
+        async def app(scope, receive, send):
+            await free.wait()
+            await send({"status": 200})
+
+        bodies = BoundedBodies(app)
+
+        async def request(visitor):
+            sent = []
+
+            async def send(message):
+                sent.append(message.get("status"))
+
+            await bodies({"type": "http", "client": (visitor, 1)}, None, send)
+            return sent[0]
+
+        kept = [asyncio.create_task(request(each)) for each in ("a", "a", "b")]
+        await asyncio.sleep(0)
+        assert await request("a") == 503
+        free.set()
+        assert await asyncio.gather(*kept) == [200, 200, 200]
+        assert await request("a") == 200
+
+    with ThreadPoolExecutor(1) as pool:
         pool.submit(lambda: asyncio.run(all_of_them())).result()
 
 

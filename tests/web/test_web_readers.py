@@ -40,6 +40,11 @@ def test_one_process_reads_one_file_after_another(readers) -> None:
     assert readers.read("", os.getpid) == first
 
 
+@pytest.mark.skipif(not Path("/proc/self/oom_score_adj").exists(), reason="of Linux")
+def test_where_memory_runs_out_it_ends_rather_than_the_server(readers) -> None:
+    assert readers.read("", Path.read_text, Path("/proc/self/oom_score_adj")).strip() == "1000"
+
+
 def test_what_takes_too_long_ends_with_its_process_and_its_files(readers) -> None:
     folder, process = Path(readers.read("", tempfile.gettempdir)), readers.read("", os.getpid)
     assert folder.is_dir()

@@ -505,6 +505,33 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly() -> None:
 
 
 @pytest.mark.slow
+def test_it_waits_for_a_file_that_is_drawn_when_it_is_stopped(client) -> None:
+    program = """
+import sys, time
+from rockflex.cli import main
+from rockflex.web._jobs import BackgroundFileJob
+
+def work(job):
+    while not job.cancelled.is_set():
+        time.sleep(0.01)
+    time.sleep(0.5)
+    print("drawn", file=sys.stderr, flush=True)
+
+BackgroundFileJob.work = work
+main()
+"""
+    with served(sys.executable, "-c", program, "serve") as (process, port):
+        other = type(client)(f"http://127.0.0.1:{port}")
+        token = other.ask("/api/file/record", client.state())["token"]
+        while json.loads(other.request(f"/api/file/{token}")[2])["status"] != "running":
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=HANG)
+    assert process.returncode == 0
+    assert "drawn" in said
+
+
+@pytest.mark.slow
 def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping(tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))

@@ -98,6 +98,23 @@ def test_one_visitor_leaves_a_place_to_others() -> None:
     run(all_of_them())
 
 
+def test_who_took_less_time_comes_first() -> None:
+    async def all_of_them():
+        one, order = Slots(1), []
+
+        async def work(name, seconds=0.0):
+            async with one.place(visitor(name)):
+                order.append(name)
+                await asyncio.sleep(seconds)
+
+        for name in ("a", "b", "c"):
+            await work(name, 0.1)
+        await asyncio.gather(work("a", 0.1), work("b"), work("c"), work("new"))
+        assert order[3:] == ["a", "new", "b", "c"] or order[3:] == ["a", "new", "c", "b"]
+
+    run(all_of_them())
+
+
 class Waits(BackgroundWork):
     """A job that notes its beginning, and lasts until it is let go."""
 

@@ -8,6 +8,7 @@ import typer
 
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
+from rockflex.cli import _output as output
 from rockflex.foundation.errors import InputError
 from rockflex.studies.progress import progress_bar
 
@@ -110,6 +111,7 @@ def animate(
     runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
     title = None if scale == 1.0 else f"{literal_text(batch.motions[0].name)} × {scale:g}"
+    told = output.written_remark(target)
     with naming_flags_in_errors(FLAGS), progress_bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
@@ -117,7 +119,7 @@ def animate(
             panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
             progress=lambda done, total: show(done, total, "")
         )  # fmt: skip
-    console.print_remark(f"Written to {target}")
+    console.print_remark(told)
     console.print_warnings(loaded.warnings)
     print_run_warnings(runs)
     if print_failed_runs(runs):

@@ -135,8 +135,9 @@ def check(
         _print_checks(table, shown)
     console.print_warnings((*loaded.warnings, *found.warnings))
     if page is not None:
+        told = output.written_remark(page)
         write_report(found, page, structure=loaded.built, title=loaded.name, limits=given, **written)
-        console.print_remark(f"Written to {page}")
+        console.print_remark(told)
     if strict and not table.ok:
         raise typer.Exit(1)
 

@@ -131,8 +131,9 @@ def compare(
     counts = zip(names, comparison.overturned, strict=True)
     console.print_warnings(f"{name} overturned under {n} of {len(found)} records" for name, n in counts if n)
     if page is not None:
+        told = output.written_remark(page)
         write_report(comparison, page, **written)
-        console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+        console.print_remark(f"{told}; any browser prints it on one sheet of A4")
 
 
 def load_alternatives(

@@ -116,6 +116,11 @@ def output_file_stems(names: Iterable[str]) -> list[str]:
     return stems
 
 
+def written_remark(path: Path) -> str:
+    """Return, before a file is written, that it was written, and that it replaced one if there is one now."""
+    return f"Written to {path}" + (", in place of an earlier file" if path.exists() else "")
+
+
 def write_table(table: "pd.DataFrame", path: Path) -> None:
     """Write a table as CSV."""
     from rockflex.foundation.csv import table_as_csv

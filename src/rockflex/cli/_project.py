@@ -118,7 +118,9 @@ def new(
             **given,
         )
     console.print_warnings([f"{name}: {text}" for name, each in loaded.items() for text in each.warnings])
-    console.print_remark(f"Written to {project.save(target)}; rockflex project run computes its results")
+    told = output.written_remark(target)
+    project.save(target)
+    console.print_remark(f"{told}; rockflex project run computes its results")
 
 
 @app.command("run", epilog=RUN_EPILOG, no_args_is_help=True)
@@ -158,8 +160,9 @@ def report(
 
     page = checked_path_of_report(out, force=force, flag="The report")
     written = options.report_format(page, output_units, language, comma=decimal_comma)
+    told = output.written_remark(page)
     read_project(file).report(page, structure, workers, **written)
-    console.print_remark(f"Written to {page}")
+    console.print_remark(told)
 
 
 @app.command("show", epilog=SHOW_EPILOG, no_args_is_help=True)

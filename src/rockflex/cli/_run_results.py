@@ -396,6 +396,7 @@ def write_report_of_run(
             if run.error
         ]
     given: dict[str, Any] = {"title": title, **loaded.report, **head}
+    told = output.written_remark(page)
     write_report(
         [run.response for run in runs if run.response is not None],
         page,
@@ -406,7 +407,7 @@ def write_report_of_run(
         **given,
     )
     prints = "; any browser prints it on one sheet of A4" if page.suffix.lower().startswith(".htm") else ""
-    console.print_remark(f"Written to {page}{prints}")
+    console.print_remark(f"{told}{prints}")
 
 
 def _typed_command() -> list[str]:

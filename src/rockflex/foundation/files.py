@@ -2,11 +2,14 @@
 
 import codecs
 import os
+import platform
+import re
 import stat
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
+from zlib import crc32
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import path_shown, shown
@@ -89,7 +92,7 @@ def unicode_text(content: bytes) -> str:
 
 def write_file_atomically(path: Path, content: bytes) -> Path:
     """Write `content` to a temporary file, flush it to disk and move it to `path`; on failure `path` is unchanged."""
-    with writing_atomically(path) as temporary, temporary.open("xb") as file:
+    with writing_atomically(path, tidy=False) as temporary, temporary.open("xb") as file:
         file.write(content)
     return path
 
@@ -103,7 +106,9 @@ def write_given_file(path: Path, content: bytes) -> Path:
         If the system does not let it.
     """
     try:
-        return write_file_atomically(path, content)
+        with writing_atomically(path) as temporary, temporary.open("xb") as file:
+            file.write(content)
+        return path
     except OSError as error:
         raise InputError(
             f"Cannot write to {path_shown(path)}: {error.strerror or error}. Give a path that can be written to.",
@@ -112,18 +117,21 @@ def write_given_file(path: Path, content: bytes) -> Path:
 
 
 @contextmanager
-def writing_atomically(path: Path, suffix: str = "") -> Generator[Path]:
+def writing_atomically(path: Path, suffix: str = "", *, tidy: bool = True) -> Generator[Path]:
     """Yield the path of a temporary file; what was written to it is flushed to disk and moved to `path` at the end.
 
     The name of the temporary file ends in `suffix`. On failure it is removed, and `path` is unchanged. Where `path` is
-    a link, the file is replaced that it leads to.
+    a link, the file is replaced that it leads to. With `tidy` those are removed that killed processes left beside it,
+    for which the whole folder is listed.
     """
     if path.is_symlink():
         with suppress(FileNotFoundError):  # a link to a new file
             path.stat()  # an error if links lead in a circle
         path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}-{uuid4().hex}{suffix}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}-{_host()}{uuid4().hex[8:]}{suffix}")
+    if tidy:
+        _remove_files_of_dead_processes(path)
     try:
         yield temporary
         with temporary.open("rb+") as file:
@@ -133,6 +141,31 @@ def writing_atomically(path: Path, suffix: str = "") -> Generator[Path]:
         temporary.unlink(missing_ok=True)
         raise
     _sync_folder_to_disk(path.parent)
+
+
+def _host() -> str:
+    return f"{crc32(platform.node().encode()):08x}"
+
+
+def _remove_files_of_dead_processes(path: Path) -> None:
+    """Remove the temporary files of a file whose processes, of this machine, run no more."""
+    begun = re.compile(rf"{re.escape(f'.{path.name}.')}(\d{{1,9}}+)-{_host()}[0-9a-f]{{24}}")
+    with suppress(OSError), os.scandir(path.parent) as folder:
+        for each in folder:
+            found = begun.match(each.name)
+            if found is not None and not process_runs(int(found[1])):
+                Path(each).unlink()
+
+
+def process_runs(pid: int) -> bool:
+    """Whether there is a process on this machine with this number."""
+    if os.name == "nt":  # where signal 0 interrupts the process
+        return True
+    try:
+        os.kill(pid, 0)
+    except OSError as error:
+        return isinstance(error, PermissionError)
+    return True
 
 
 def remove_temporary_files(folder: Path, pattern: str) -> None:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import check_all_positive, checked_finite_vector, checked_positive
+from rockflex.foundation.csv import guarded_text
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path, write_given_file
 from rockflex.foundation.shown import shown
@@ -312,7 +313,8 @@ def write_pelicun(
     path
         Path of the file, such as ``fragility.csv``; an existing one is replaced.
     curves
-        The limit states of each structure, as in `write_nrml`; its name is its ID in Pelicun.
+        The limit states of each structure, as in `write_nrml`; its name is its ID in Pelicun, behind an
+        apostrophe if it begins with a sign, which a spreadsheet would compute.
     measure
         The intensity measure: PGA, PGV, or SA(T) with the period in s. The demand of Pelicun's assessment is then
         "PGA", "PGV", or "SA_T" with the period as it is written here.
@@ -356,7 +358,7 @@ def write_pelicun(
     table.writerow([*head, *(f"LS{number}-{column}" for number in states for column in _STATE_COLUMNS)])
     for function in functions:
         cells = [cell for limit in function.curves for cell in _pelicun_state_cells(function, limit, im)]
-        table.writerow([function.name, 0, demand, unit, 0, 1, *cells])
+        table.writerow([guarded_text(function.name), 0, demand, unit, 0, 1, *cells])
     return write_given_file(target, text.getvalue().encode())
 
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rockflex.foundation.csv import guarded_text
 from rockflex.foundation.files import write_file_atomically
 from rockflex.report._document import FinishedResult, PublicationReport, PublishedLine
 
@@ -130,12 +131,9 @@ def report_numbers_to_csv(document: PublicationReport) -> str:
     for section in document.sections:
         for line in section.numbers:
             ours = repr(line.ours) if math.isfinite(line.ours) else f"{line.ours:g}"
-            writer.writerow(
-                (
-                    section.name, line.place, line.name, line.printed, ours, line.unit, line.difference_as_text,
-                    line.criterion, line.verdict, line.note,
-                )
-            )  # fmt: skip
+            first = map(guarded_text, (section.name, line.place, line.name))  # which may be names of records
+            rest = (line.printed, ours, line.unit, line.difference_as_text, line.criterion, line.verdict)
+            writer.writerow((*first, *rest, guarded_text(line.note)))
     return out.getvalue()
 
 

@@ -61,6 +61,7 @@ MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be r
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
 MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
 BODY_TIMEOUT = 60.0  # s to receive a body
+END = 1.5  # s for the files that are written when the server is stopped: within the seconds that `serve` waits
 MAX_INLINE_BYTES = 20_000  # bytes that are checked within a few milliseconds; more would block the event loop
 Answer = Callable[[], Any]
 Endpoint = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -354,6 +355,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         server.jobs.close()
         server.files.close()
         server.readers.close()
+        server.files.wait(END)  # Python ends threads by force, which aborts the process where one draws in C++
 
     middleware = [
         Middleware(SecurityHeaders),

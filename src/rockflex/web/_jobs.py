@@ -199,6 +199,12 @@ class BackgroundJobs(Generic[AnyWork]):
             self._closed = True
             self._changed.notify_all()
 
+    def wait(self, seconds: float) -> None:
+        """Wait until the threads of a server that ends have ended, but not longer than that."""
+        end = monotonic() + seconds
+        for each in self._threads:
+            each.join(max(end - monotonic(), 0.0))
+
     def _run(self) -> None:
         while (job := self._next()) is not None:
             job.compute()

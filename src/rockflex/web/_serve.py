@@ -74,11 +74,11 @@ def serve(
     app = make_app(host, names, token)
     import signal
     import socket
-    from threading import Thread, current_thread, main_thread
+    from threading import Event, Thread, current_thread, main_thread
 
     import uvicorn
 
-    from rockflex.web._connections import patient_protocol
+    from rockflex.web._connections import MAX_CONNECTIONS, patient_protocol
 
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     # Windows would give a port to several servers, and the others to those of which none listens yet.
@@ -94,18 +94,27 @@ def serve(
         ) from error
     config = uvicorn.Config(
         app, log_level="warning", http=patient_protocol(), ws="none", timeout_keep_alive=KEEP_ALIVE,
-        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False, root_path=root_path.rstrip("/"),
+        limit_concurrency=MAX_CONNECTIONS, timeout_graceful_shutdown=GRACE, server_header=False,
+        root_path=root_path.rstrip("/"),
     )  # fmt: skip
     server = uvicorn.Server(config)
+    over = Event()  # Python 3.11 takes a thread for ended once a signal has interrupted its join
+
+    def run() -> None:
+        try:
+            server.run([listener])
+        finally:
+            over.set()
+
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
-    running = Thread(target=server.run, args=([listener],), name="server", daemon=True)
+    running = Thread(target=run, name="server", daemon=True)
     if current_thread() is main_thread():
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     with listener:
         running.start()
         try:
-            while running.is_alive() and not server.started:
-                running.join(0.02)
+            while not server.started and not over.wait(0.02):
+                pass
             if server.started:
                 address = page_address(host, number) + (f"/?token={token}" if token else "")
                 if on_start is not None:
@@ -115,13 +124,13 @@ def serve(
 
                     # Some browsers of a terminal return only when they are closed.
                     Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-            while running.is_alive():
-                running.join(0.5)
+            while not over.wait(0.5):
+                pass
             if not server.started:
                 raise InputError("The page did not start; the lines above say why.")
         finally:
             server.should_exit = True
-            running.join(GRACE + 2.0)
+            over.wait(GRACE + 2.0)
 
 
 def _let_threads_share_memory() -> None:

@@ -548,7 +548,7 @@ def read_toml_file(file: Path, kind: str) -> dict[str, Any]:
     InputError
         If the file cannot be read, is not a regular file, or is not TOML.
     """
-    check_regular_file(file)
+    check_regular_file(checked_file_path("path", file))
     try:
         return tomllib.loads(unicode_text(file.read_bytes()))
     except FileNotFoundError as error:

@@ -12,7 +12,7 @@ from typing import IO
 from uuid import uuid4
 
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.files import remove_temporary_files
+from rockflex.foundation.files import process_runs, remove_temporary_files
 from rockflex.foundation.shown import shortened
 
 LOCK = "lock"  # the name of the file
@@ -187,7 +187,7 @@ def _is_left_over(path: Path, file: IO[bytes]) -> bool:
     if host != platform.node():  # file systems of several hosts may grant a lock to two of them
         return False
     locked = _lock_file(file)
-    return locked or (locked is None and not _process_runs(pid))
+    return locked or (locked is None and not process_runs(pid))
 
 
 def _own_name() -> bytes:
@@ -205,7 +205,7 @@ def _name_in(content: bytes) -> tuple[int, str]:
 def _is_held(file: IO[bytes], pid: int) -> bool:
     """Whether a process holds a lock that is open for reading; its number decides where the system cannot say."""
     free = _lock_file(file, shared=True)
-    return _process_runs(pid) if free is None else not free
+    return process_runs(pid) if free is None else not free
 
 
 def _lock_file(file: IO[bytes], *, shared: bool = False) -> bool | None:
@@ -224,14 +224,4 @@ def _lock_file(file: IO[bytes], *, shared: bool = False) -> bool | None:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except OSError as error:
         return False if error.errno in BUSY else None
-    return True
-
-
-def _process_runs(pid: int) -> bool:
-    if os.name == "nt":  # where signal 0 interrupts the process
-        return True
-    try:
-        os.kill(pid, 0)
-    except OSError as error:
-        return isinstance(error, PermissionError)
     return True
