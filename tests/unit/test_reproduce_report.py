@@ -149,7 +149,7 @@ def test_a_finished_result_is_stored_without_loss(document):
 def test_a_number_named_like_a_formula_is_a_text(document):
     first = document.sections[0]
     numbers = [replace(first.numbers[0], name="=1+1", note="@SUM(A1)"), *first.numbers[1:]]
-    text = report.report_numbers_to_csv(replace(document, sections=[replace(first, numbers=numbers)]))
+    text = report_numbers_to_csv(replace(document, sections=[replace(first, numbers=numbers)]))
     row = next(csv.DictReader(io.StringIO(text)))
     assert (row["name"], row["note"]) == ("'=1+1", "'@SUM(A1)")
 
