@@ -102,21 +102,24 @@ def test_labels_of_no_model_are_refused_at_once(label):
 
 
 @pytest.mark.parametrize(
-    ("model", "label", "zeros", "options"),
+    ("model", "label", "values", "options"),
     [
         ("2DOF-C", "2DOF-C", 4, {}),
         ("rigid-C", "rigid-C", 2, {}),
         ("1DOF-fixed", "1DOF-fixed-BW", 4, {"bouc_wen": rf.BoucWen(0.05)}),
     ],
 )
-def test_a_motion_that_cannot_be_followed(model, label, zeros, options):
+def test_a_motion_that_cannot_be_followed(model, label, values, options):
     """Accelerations beyond all numbers: the error names the sample and the state."""
     shaken = rf.GroundMotion(np.array([0.0, 1e160, -1e160, 0.0]), 0.02)
     text = (
         f"The motion of {label} cannot be integrated in the sample before 0.02 s: no step is short enough. The state "
-        f"[D, D', θ, θ'] there is [{', '.join('0' * zeros)}]. Check the parameters."
+        "[D, D', θ, θ'] there is ["
     )
     with pytest.raises(rf.SolverError) as caught:
         rf.simulate(FRAMES[0], shaken, model, work_limit=None, **options)
-    assert str(caught.value) == text
-    assert rf.simulate_many(FRAMES[0], shaken, model, work_limit=None, **options)["error"].tolist() == [text]
+    before, _, state = str(caught.value).partition(text)
+    assert not before
+    assert [abs(float(value)) < 1e-100 for value in state.partition("]")[0].split(", ")] == [True] * values
+    table = rf.simulate_many(FRAMES[0], shaken, model, work_limit=None, **options)
+    assert table["error"].tolist() == [str(caught.value)]
