@@ -339,7 +339,7 @@ def test_the_plan_tells_its_runs_before(law):
     from rockflex.studies._run_matrix import study_matrix
     from rockflex.studies.design._design_search import DesignSearchPlan
 
-    matrix = study_matrix([rocking_properties_of(STRUCTURE)], SUITE, "2DOF-S", "settle", None, None)
+    matrix = study_matrix([rocking_properties_of(STRUCTURE)], SUITE, "2DOF-S", {"free_vibration": "settle"})
     plan = DesignSearchPlan(matrix, SEARCH, [SLOW], COST, SCALES, 200)
     assert plan.n_runs == (36 + 4 * 8) * 90
     assert not plan.exact_count

@@ -13,10 +13,10 @@ import pytest
 import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex.studies._result_tables import PivotLifts, count_pivot_lifts
-from rockflex.studies._run_matrix import record_checksums, record_groups, study_matrix
+from rockflex.studies._run_matrix import record_checksums, record_groups
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies._study_kind import KINDS
-from rockflex.studies.cloud import CloudPlan, CloudStudy, run_cloud
+from rockflex.studies.cloud import CloudStudy, run_cloud
 
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
 STRUCTURES = [{"name": "stiff", "frame": FRAME}, {"frame": {**FRAME, "period": 1.0, "stiffness_ratio": 0.0}}]
@@ -250,15 +250,16 @@ def test_mirrored_motion():
 
 
 def test_what_is_not_a_number_is_missing():
-    matrix = study_matrix(rf.rigid_block(0.2, 1.5), SUITE[0], "rigid", 0.0, None, None)
-    table = CloudPlan(matrix, [1.0], 10).chunk(0)
+    study = CloudStudy(structures=rf.rigid_block(0.2, 1.5), records=SUITE[0], models="rigid")
+    table = study.plan().chunk(0)
     assert (table["sa_t1"].null_count, table["pga"].null_count) == (1, 0)
     assert table["pva"].null_count == 1
 
 
 def test_the_peak_of_a_vertical_component_is_a_measure():
     both = SUITE[0].with_vertical(SUITE[0].acceleration[::-1])
-    table = CloudPlan(study_matrix(rf.rigid_block(0.2, 1.5), both, "rigid", 0.0, None, None), [-2.0], 10).chunk(0)
+    study = CloudStudy(structures=rf.rigid_block(0.2, 1.5), records=both, models="rigid", scales=[-2.0])
+    table = study.plan().chunk(0)
     assert table["pva"].to_pylist() == [2.0 * both.pva]
 
 

@@ -10,7 +10,6 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.studies._run_matrix import study_matrix
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies.incremental import (
     IncrementalStudy,
@@ -21,7 +20,7 @@ from rockflex.studies.incremental import (
     rising_scales,
     run_incremental,
 )
-from rockflex.studies.stripes import StripePlan, StripeStudy, stripe_counts
+from rockflex.studies.stripes import StripeStudy, stripe_counts
 
 BLOCK = rf.rigid_block(0.2, 1.5)
 PULSE = rf.one_sine_pulse(2.0, 1.0, dt=0.01)
@@ -236,9 +235,11 @@ def test_stripe_messages():
         stripe_counts(run_plan(stripes().plan()), "far")
     with pytest.raises(rf.InputError, match="limit must be a positive, finite number in rad"):
         stripe_counts(run_plan(stripes().plan()), -1.0)
-    matrix = study_matrix(rf.Frame(**FRAME), rf.quiet_motion(1.0), "2DOF-S", 0.0, None, None)
+    study = rf.StripeStudy(
+        structures=rf.Frame(**FRAME), records=rf.quiet_motion(1.0), models="2DOF-S", measure="pgv", levels=[1.0]
+    )
     with pytest.raises(rf.InputError, match=r"has no pgv for 'S1', so no scale takes it to a level\."):
-        StripePlan(matrix, "pgv", [1.0], 10)
+        study.plan()
 
 
 def test_a_ladder_beyond_double_precision():

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from numbers import Real
 from typing import Any, Literal, Protocol, TypeAlias, cast, get_args
 
@@ -32,6 +33,16 @@ GroundChoice: TypeAlias = Ground | Callable[[RockingProperties], Ground] | None
 
 WORK_LIMIT = 30.0
 """Default limit of the work of one run, in s of computing on one core."""
+
+
+def check_keywords(given: Mapping[str, Any], known: type) -> None:
+    """Raise a TypeError, as Python does, if no option that is `known`, a TypedDict, has a name."""
+    names = list(known.__annotations__)
+    for name in given:
+        if name not in names:
+            near = get_close_matches(name, names, n=1)
+            hint = f"Did you mean {near[0]!r}?" if near else f"Known are {', '.join(names)}."
+            raise TypeError(f"There is no option {name!r}. {hint}")
 
 
 class RockingStructure(Protocol):

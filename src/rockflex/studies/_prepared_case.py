@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
-from typing import Any, Literal, Self, cast
+from typing import Any, Literal, Self, SupportsIndex, TypedDict, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,7 @@ from rockflex.studies._arguments import (
     free_vibration_time,
     ground_under_structure,
 )
+from rockflex.studies.progress import ProgressChoice
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +120,24 @@ class PreparedCase:
 def has_vertical_motion(motion: GroundMotion) -> bool:
     """Return whether the ground moves vertically in a motion."""
     return motion.vertical is not None and bool(motion.vertical.any())
+
+
+class RunKeywords(TypedDict, total=False):
+    """The options of a run by name, as functions of many runs take them; `simulate` has their meaning."""
+
+    free_vibration: float | Literal["settle"]
+    bouc_wen: BoucWen | None
+    impact: ImpactLaw | None
+    ground: GroundChoice
+    work_limit: float | None
+
+
+class ManyKeywords(RunKeywords, total=False):
+    """The options of many runs by name; `simulate_many` has their meaning."""
+
+    initial: InitialState | None
+    workers: SupportsIndex | None
+    progress: ProgressChoice
 
 
 @dataclass(frozen=True, kw_only=True)

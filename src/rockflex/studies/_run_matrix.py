@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, Self, cast
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -13,8 +13,6 @@ from rockflex.foundation.checks import checked_instance, real_or_nan
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import few_texts_shown, shown
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import Model
 from rockflex.models._work import Task, WorkLimitError
 from rockflex.motion._ground_motion import GroundMotion
@@ -25,8 +23,6 @@ from rockflex.response._response import Response
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
-    GroundChoice,
     Models,
     Motions,
     RockingStructure,
@@ -36,7 +32,7 @@ from rockflex.studies._arguments import (
     checked_structures,
     rocking_properties_of,
 )
-from rockflex.studies._prepared_case import PreparedCase, RunOptions, Scaled, peaks_of_runs
+from rockflex.studies._prepared_case import PreparedCase, RunKeywords, RunOptions, Scaled, peaks_of_runs
 from rockflex.studies._result_tables import Columns, Row, Table, columns_of_kind, result_columns
 
 Demands = Mapping[str, Callable[[Response], float]]
@@ -395,26 +391,23 @@ def record_columns(motions: Suite) -> Columns:
     return {"motion": motions.names, "group": groups, **columns_of_kind("magnitude distance_km", float)}
 
 
+class StudyRunKeywords(RunKeywords, total=False):
+    """The options of a study's runs by name: those of a run, and the demands."""
+
+    demands: Demands | None
+
+
 def study_matrix(
-    structures: Structures,
-    motions: Motions,
-    models: Models,
-    free_vibration: float | Literal["settle"],
-    bouc_wen: BoucWen | None,
-    impact: ImpactLaw | None,
-    *,
-    friction: bool = False,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    demands: Demands | None = None,
+    structures: Structures, motions: Motions, models: Models, keywords: StudyRunKeywords, *, friction: bool = False
 ) -> StudyMatrix:
     """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ..."""
     checked_instance("friction", friction, bool)
+    given: dict[str, Any] = {**keywords}
+    demands = checked_demands(given.pop("demands", None), ())
+    options = StudyOptions.of(**given)
     chosen = tuple(checked_models(models))
-    options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)
     suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
     listed, names = checked_structures(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: rocking_properties_of(each) for name, each in zip(names, listed, strict=True)}
-    options = replace(options, models=chosen, friction=friction, demands=checked_demands(demands, ()))
-    return StudyMatrix(named, suite, options)
+    return StudyMatrix(named, suite, replace(options, models=chosen, friction=friction, demands=demands))

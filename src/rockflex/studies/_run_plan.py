@@ -4,14 +4,16 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
+from typing import TYPE_CHECKING, Any, SupportsIndex, TypedDict, TypeVar, cast
 
 from rockflex.engine.loops import LEVEL as VECTOR_LEVEL
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.versions import git_commit, package_versions
-from rockflex.studies._plan import ChunkedPlan
+from rockflex.studies._arguments import Models, Motions, Structures, check_keywords, checked_scale_factors
+from rockflex.studies._plan import PER_CHUNK, ChunkedPlan
 from rockflex.studies._result_tables import ArrowTable, tables_to_dataframe
+from rockflex.studies._run_matrix import StudyMatrix, StudyRunKeywords, study_matrix
 from rockflex.studies.folders._folder import StudyFolder
 from rockflex.studies.folders._manifest import LEVEL
 from rockflex.studies.folders._parts import PartMaker, StudyPart
@@ -24,8 +26,61 @@ if TYPE_CHECKING:
 
 
 Result = TypeVar("Result")
+Kind = TypeVar("Kind", bound=StudySpec)
 MIN_CHUNKS_PER_THREAD = 2  # with fewer, the threads share one chunk after the other, and none is idle at the end
 LIBRARIES = ("rockflex", "numpy", "scipy")  # those that affect the numbers
+
+
+class PlaceKeywords(TypedDict, total=False):
+    """Where and how a study is computed, by name; `run_cloud` has the meaning."""
+
+    workers: SupportsIndex | None
+    progress: ProgressChoice
+    folder: str | Path | None
+    dask: str | None
+
+
+class StudyKeywords(StudyRunKeywords, PlaceKeywords, total=False):
+    """The options of a study's runs, and where and how they are computed."""
+
+
+def run_of_arguments(
+    kind: type[StudySpec],
+    structures: Structures,
+    motions: Motions,
+    models: Models,
+    keys: dict[str, Any],
+    options: StudyKeywords,
+) -> "pd.DataFrame":
+    """Run a study of a kind, as its function in Python does; `keys` are those of its file beside these arguments."""
+    run, place = split_keywords(options)
+    matrix = study_matrix(structures, motions, models, run)
+    if "scales" in keys:
+        keys |= {"scales": checked_scale_factors(keys["scales"], max(matrix.motions, key=lambda motion: motion.pga))}
+    study = study_of_matrix(kind, structures, matrix, run, **keys)
+    return run_plan(study.plan(), study=lambda: study, **place)
+
+
+def study_of_matrix(
+    kind: type[Kind], structures: Structures, matrix: StudyMatrix, run: StudyRunKeywords, **keys: Any
+) -> Kind:
+    """Return the study of these structures with the records and models of their matrix, and these options."""
+    given: dict[str, Any] = {"structures": structures, "records": matrix.motions, "models": matrix.labels, **run}
+    return kind(**given, **keys, runs_per_chunk=PER_CHUNK)
+
+
+def split_keywords(options: StudyKeywords) -> tuple[StudyRunKeywords, PlaceKeywords]:
+    """Return the options of the runs, and where and how they are computed.
+
+    Raises
+    ------
+    TypeError
+        If there is no option of a name, as for any function of Python.
+    """
+    check_keywords(options, StudyKeywords)
+    place = {name: value for name, value in options.items() if name in PlaceKeywords.__annotations__}
+    run = {name: value for name, value in options.items() if name not in place}
+    return cast("StudyRunKeywords", run), cast("PlaceKeywords", place)
 
 
 def run_plan(

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from threading import Lock
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ from rockflex.studies._arguments import (
     Output,
     RockingStructure,
     Structures,
+    check_keywords,
     check_motion_argument,
     checked_models,
     checked_motions,
@@ -42,11 +43,11 @@ from rockflex.studies._arguments import (
     rocking_properties_of,
     wants_history,
 )
-from rockflex.studies._prepared_case import PreparedCase, RunOptions, RunPeaks, peaks_of_runs
+from rockflex.studies._prepared_case import ManyKeywords, PreparedCase, RunOptions, RunPeaks, peaks_of_runs
 from rockflex.studies._result_tables import RESULTS, arrow_table, tables_to_dataframe
 from rockflex.studies._run_matrix import RunMatrix
 from rockflex.studies.parallel import map_runs_in_order, worker_count
-from rockflex.studies.progress import ProgressChoice, reporting_progress
+from rockflex.studies.progress import reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -192,14 +193,7 @@ def simulate_many(
     models: Models = "MDOF-S",
     output: Output = "peaks",
     scales: float | Sequence[float] = 1.0,
-    free_vibration: float | Literal["settle"] = 0.0,
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    initial: InitialState | None = None,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
+    **options: Unpack[ManyKeywords],
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
@@ -217,17 +211,15 @@ def simulate_many(
         ``"peaks"``, or ``"history"`` for a further column `response` with every run's `Response`.
     scales
         Factor on the acceleration, or a sequence of factors.
-    free_vibration, bouc_wen, impact, initial
-        As in `simulate`. `bouc_wen` applies to the models whose label ends in "-BW", or to all models if there are
+    options
+        `free_vibration`, `bouc_wen`, `impact`, `initial`, `ground` and `work_limit` by name, as in `simulate`; and
+        those below. `bouc_wen` applies to the models whose label ends in "-BW", or to all models if there are
         none, which must then have one mode. All models start from the same initial state. A run fails if its model has
-        fewer modes than the state has values, or a fixed base where the state rotates.
+        fewer modes than the state has values, or a fixed base where the state rotates. With several structures, a
+        function as the `ground` gives each its own: ``lambda properties: Ground(springs=winkler_bed(
+        properties.half_width, ...), ...)``. A run that exceeds `work_limit` has a message in `error`.
     workers
         Number of threads; None for one a core.
-    work_limit
-        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
-    ground
-        As in `simulate`. With several structures, a function gives each its own: ``lambda properties:
-        Ground(springs=winkler_bed(properties.half_width, ...), ...)``.
     progress
         ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
         of the runs that are done and of all, called here, first with 0. What it raises ends the study.
@@ -262,16 +254,17 @@ def simulate_many(
     3  MDOF-S    1.0  rocking
     """
     history = wants_history(output)
-    options = RunOptions.of(
-        free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
-    )
+    check_keywords(options, ManyKeywords)
+    given: dict[str, Any] = {**options}
+    workers, progress = given.pop("workers", None), given.pop("progress", None)
+    chosen_options = RunOptions.of(**given)
     everything, names = checked_structures(structures)
     records = checked_motions(motions)
     check_horizontal_component(*records)
     chosen = checked_models(models)
     factors = checked_scale_factors(scales, max(records, key=lambda motion: motion.pga))
     shape = (len(everything), len(records), len(chosen), len(factors))
-    matrix = RunMatrix(everything, records, chosen, options, history=history, floors=history)
+    matrix = RunMatrix(everything, records, chosen, chosen_options, history=history, floors=history)
     runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
     each, total = len(runs_of_one), math.prod(shape)
     least, most = RUNS_PER_TASK
@@ -336,13 +329,7 @@ def simulate_set(
     model: str | Model = "MDOF-S",
     rule: Rule | None = None,
     periods: tuple[float, float] | None = None,
-    free_vibration: float | Literal["settle"] = 0.0,
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    initial: InitialState | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    workers: SupportsIndex | None = None,
+    **options: Unpack[ManyKeywords],
 ) -> RecordSet:
     """Simulate one structure under a set of records, and find the values for which codes design.
 
@@ -362,10 +349,8 @@ def simulate_set(
     periods
         Smallest and largest period in s for which the records were chosen, to compare with that of rocking. Default:
         those of the `Selection`.
-    free_vibration, bouc_wen, impact, initial, work_limit, ground
-        As in `simulate`.
-    workers
-        Number of threads; None for one a core.
+    options
+        As in `simulate_many`.
 
     Returns
     -------
@@ -392,10 +377,7 @@ def simulate_set(
         periods = (float(motions.periods.min()), float(motions.periods.max()))
     records, span = checked_motions(motions), None if periods is None else checked_period_range(periods)
     kept = checked_rule(rule, len(records))
-    table = simulate_many(
-        *(structure, records, model, "history", 1.0, free_vibration, bouc_wen, impact, initial, workers),
-        *(work_limit, ground),
-    )
+    table = simulate_many(structure, records, model, "history", **options)
     failed = table[table["error"].notna()]
     if len(failed):
         first = failed.iloc[0]

@@ -1,27 +1,21 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Literal, Unpack
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
-    GroundChoice,
     Models,
     Motions,
     Structures,
     checked_scale_factors,
     expand_scale_range,
 )
-from rockflex.studies._plan import PER_CHUNK, CrossPlan
-from rockflex.studies._run_matrix import Demands, StudyMatrix, study_matrix
-from rockflex.studies._run_plan import run_plan
-from rockflex.studies.progress import ProgressChoice
+from rockflex.studies._plan import CrossPlan
+from rockflex.studies._run_matrix import StudyMatrix
+from rockflex.studies._run_plan import StudyKeywords, run_of_arguments
 from rockflex.studies.spec import LimitKeys, StructuresStudySpec
 
 if TYPE_CHECKING:
@@ -95,17 +89,8 @@ def run_cloud(
     motions: Motions,
     models: Models = "MDOF-S",
     scales: float | Sequence[float] = 1.0,
-    free_vibration: float | Literal["settle"] = 0.0,
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
     friction: bool = False,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
-    demands: Demands | None = None,
-    folder: str | Path | None = None,
-    dask: str | None = None,
+    **options: Unpack[StudyKeywords],
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale, with intensity measures.
 
@@ -116,16 +101,14 @@ def run_cloud(
     motions
         One, a sequence such as a suite, a mapping from names, or a `Selection`, whose scaled records are used. All
         names must differ.
-    models, scales, free_vibration, bouc_wen, impact
+    models, scales
         As in `simulate_many`.
     friction
         Whether to find the friction that prevents sliding (Eqs. 20-22), which needs the history of every run.
+    options
+        `free_vibration`, `bouc_wen`, `impact`, `ground` and `work_limit` as in `simulate_many`; and these:
     workers
         Number of threads; None for one a core.
-    work_limit
-        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
-    ground
-        As in `simulate_many`.
     progress
         ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
         of the runs that are done and of all, called here, first with 0. What it raises ends the study.
@@ -172,22 +155,5 @@ def run_cloud(
     0        S1    0.5  1.5  rocking
     1        S1    1.0  3.0  rocking
     """
-    given: Any = scales
-    matrix = study_matrix(
-        structures,
-        motions,
-        models,
-        free_vibration,
-        bouc_wen,
-        impact,
-        friction=friction,
-        work_limit=work_limit,
-        ground=ground,
-        demands=demands,
-    )
-    plan = CloudPlan(matrix, given, PER_CHUNK)
-
-    def study() -> CloudStudy:
-        return CloudStudy.of_matrix(structures, matrix, scales=plan.scales, friction=friction, runs_per_chunk=PER_CHUNK)
-
-    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
+    keys = {"scales": scales, "friction": friction}
+    return run_of_arguments(CloudStudy, structures, motions, models, keys, options)

@@ -4,23 +4,19 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Unpack
 
 from pydantic import Field, model_validator
 
 from rockflex.foundation.checks import checked_in_range, checked_positive
 from rockflex.foundation.errors import InputError
 from rockflex.fragility._limit_states import OVERTURNING, check_limit_columns, limit_state_of
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.motion._measures import scalable_measure
-from rockflex.studies._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
-from rockflex.studies._plan import PER_CHUNK, CrossPlan
+from rockflex.studies._arguments import Models, Motions, Structures
+from rockflex.studies._plan import CrossPlan
 from rockflex.studies._result_tables import Columns, Row, Table, joined_tables
-from rockflex.studies._run_matrix import Demands, StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.studies._run_plan import run_plan
-from rockflex.studies.progress import ProgressChoice
+from rockflex.studies._run_matrix import StudyMatrix, check_base_can_lift
+from rockflex.studies._run_plan import StudyKeywords, run_of_arguments
 from rockflex.studies.spec import FreeVibration, StructuresStudySpec, validator_of_check
 
 if TYPE_CHECKING:
@@ -248,16 +244,7 @@ def run_incremental(
     growth: float = 1.15,
     tolerance: float = 0.01,
     limit: str | float = "overturning",
-    free_vibration: float | Literal["settle"] = "settle",
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
-    demands: Demands | None = None,
-    folder: str | Path | None = None,
-    dask: str | None = None,
+    **options: Unpack[StudyKeywords],
 ) -> "pd.DataFrame":
     """Scale every motion until it overturns the structure, and beyond, and return every run.
 
@@ -267,8 +254,8 @@ def run_incremental(
 
     Parameters
     ----------
-    structures, motions, models, free_vibration, bouc_wen, impact, workers, work_limit, ground
-        As in `run_cloud`.
+    structures, motions, models, options
+        As in `run_cloud`; `progress` is counted in ladders: all runs of a structure, a record and a model.
     smallest_scale, largest_scale, growth
         First and last scale of the grid, and the ratio of each scale to the one before.
     tolerance
@@ -277,12 +264,6 @@ def run_incremental(
         Name of a limit state: ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1); or
         another one of ``rockflex.fragility.LIMIT_STATES``; a demand with its bound, such as ``"max_ductility > 4"``; or
         a rotation in rad. A run that overturns exceeds them all.
-    progress
-        As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
-    demands, dask
-        As in `run_cloud`.
-    folder
-        As in `run_cloud`; it is the folder of the `IncrementalStudy` of these arguments with ``runs_per_chunk=64``.
 
     Returns
     -------
@@ -308,20 +289,9 @@ def run_incremental(
     >>> round(float(runs["first_overturning_scale"].iloc[0]), 2)
     2.56
     """
-    matrix = study_matrix(
-        structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
-        demands=demands,
-    )  # fmt: skip
-    steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
-
-    def study() -> IncrementalStudy:
-        return IncrementalStudy.of_matrix(
-            structures, matrix, smallest_scale=smallest_scale, largest_scale=largest_scale, growth=growth,
-            tolerance=tolerance, limit=limit, runs_per_chunk=PER_CHUNK,
-        )  # fmt: skip
-
-    plan = IncrementalPlan(matrix, steps, limit, PER_CHUNK)
-    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
+    keys = {"smallest_scale": smallest_scale, "largest_scale": largest_scale, "growth": growth}
+    keys |= {"tolerance": tolerance, "limit": limit}
+    return run_of_arguments(IncrementalStudy, structures, motions, models, keys, options)
 
 
 def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.DataFrame":

@@ -34,14 +34,13 @@ from rockflex.models._impact import ImpactLaw, Restitution, VVELComplete, VVELSi
 from rockflex.models._label import Model, parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import OnError, Vertical, read_suite
-from rockflex.motion._suite import Suite, load_suite
+from rockflex.motion._suite import Selection, Suite, load_suite
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable, toml_problem_sentences
 from rockflex.studies._arguments import (
     WORK_LIMIT,
-    Structures,
     check_run_options,
     checked_motions,
     checked_structures,
@@ -287,10 +286,15 @@ class StudySpec(TomlTable):
     def _motions(cls, given: Any, table: ValidatorFunctionWrapHandler) -> Any:
         items = list(given.values()) if isinstance(given, Mapping) else given
         several = isinstance(items, list | tuple | Suite) and any(isinstance(each, GroundMotion) for each in items)
-        if not several and not isinstance(given, GroundMotion):
+        if not several and not isinstance(given, GroundMotion | Selection):
             return table(given)
         suite = given if isinstance(given, Suite) else Suite(checked_motions(given))
         return GivenRecords.model_construct(given=suite)
+
+    @field_validator("work_limit", mode="before")
+    @classmethod
+    def _no_limit(cls, given: object) -> object:
+        return "none" if given is None else given
 
     @property
     def kind(self) -> str:
@@ -439,17 +443,6 @@ class StructuresStudySpec(RunsStudySpec):
             for key, value in entry.checksums(self._folder).items()
         }
         return files | super().checksums()
-
-    @classmethod
-    def of_matrix(cls, structures: Structures, matrix: StudyMatrix, **keys: Any) -> Self:
-        """Return the study of these structures with the records, models and options of their matrix."""
-        options = matrix.options
-        given: dict[str, Any] = {name: getattr(options, name) for name in ("impact", "bouc_wen", "ground")}
-        given |= {"structures": structures, "records": matrix.motions, "models": matrix.labels}
-        given["free_vibration"] = "settle" if options.free_vibration is None else options.free_vibration
-        given["demands"] = options.demands or None
-        given["work_limit"] = "none" if options.work_limit is None else options.work_limit
-        return cls(**given, **keys)
 
     def matrix(self, *, friction: bool = False) -> StudyMatrix:
         """Build the structures and load the records."""

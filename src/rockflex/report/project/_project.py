@@ -242,7 +242,7 @@ class Project(HtmlTable, Value):
             self.model[name],
             self.rule,
             self.periods,
-            self.free_vibration,
+            free_vibration=self.free_vibration,
             bouc_wen=self.bouc_wen.get(name),
             impact=self.impact.get(name),
             ground=self.ground.get(name),

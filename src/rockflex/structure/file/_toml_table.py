@@ -1,6 +1,5 @@
 """A table of a TOML file, and the messages about one that is wrong."""
 
-import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -12,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.schema import PLAIN, SchemaKey
+from rockflex.foundation.shown import shown
 
 AnyTable = TypeVar("AnyTable", bound="TomlTable")
 
@@ -96,13 +96,15 @@ def toml_problem_sentences(error: ValidationError, content: Mapping[str, Any], m
             sentences[(*table, "")] = _unknown_key_sentence(table, others, list(known))
             continue
         if problem["type"] == "value_error":  # raised by a check of the whole table
-            said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
+            said = str(problem["ctx"]["error"]) if "ctx" in problem else ""
+            if not said.startswith(label):  # which the check may have named
+                said = ": ".join(filter(None, (label, said)))
         elif problem["type"] in ("missing", "union_tag_not_found"):
             said = f"{label} is missing: {valid_value_description(known[key])}."
         elif key:
-            said = f"{label} must be {valid_value_description(known[key])}, but {reprlib.repr(spot.value)} was given."
+            said = f"{label} must be {valid_value_description(known[key])}, but {shown(spot.value)} was given."
         else:
-            said = f"{label or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
+            said = f"{label or 'It'} must be a table, but {shown(spot.value)} was given."
         sentences[spot.path] = said
     return list(sentences.values())
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
 
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
@@ -15,17 +14,15 @@ from rockflex.foundation.json import as_json_value
 from rockflex.foundation.shown import shown
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._limit_states import check_limit_columns
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import Model
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable
-from rockflex.studies._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
+from rockflex.studies._arguments import Models, Motions, RockingStructure, type_description
 from rockflex.studies._plan import PER_CHUNK
 from rockflex.studies._result_tables import Columns, Row, Table
-from rockflex.studies._run_matrix import Demands, StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.studies._run_plan import run_plan
+from rockflex.studies._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.studies._run_plan import StudyKeywords, run_plan, split_keywords, study_of_matrix
 from rockflex.studies.cloud import CloudPlan, Factors
 from rockflex.studies.design._design_search import DesignSearchPlan
 from rockflex.studies.design._design_table import design_table
@@ -47,7 +44,6 @@ from rockflex.studies.design._exceedance_fit import (
     first_damping_column,
 )
 from rockflex.studies.design._requirements import DesignCost, Requirement, checked_requirements
-from rockflex.studies.progress import ProgressChoice
 from rockflex.studies.spec import FreeVibration, StructuresStudySpec, validator_of_check
 
 if TYPE_CHECKING:
@@ -327,16 +323,7 @@ def run_design(
     models: Models = "MDOF-S",
     scales: float | Sequence[float] = 1.0,
     base_mass_per_width: float = 0.0,
-    free_vibration: float | Literal["settle"] = "settle",
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
-    demands: Demands | None = None,
-    folder: str | Path | None = None,
-    dask: str | None = None,
+    **options: Unpack[StudyKeywords],
 ) -> "pd.DataFrame":
     """Simulate a structure on bases of many widths, with tendons of a few levels, under every motion.
 
@@ -353,14 +340,14 @@ def run_design(
         B in m, positive.
     tendons
         Levels of a tendon on the axis, each with every width; `TendonLevel()` means none. Default: the structure's own.
-    models, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, progress, demands, dask
+    models, scales
         As in `run_cloud`.
-    folder
-        As in `run_cloud`; it is the folder of the `DesignStudy` of these arguments with ``limits=[]`` and
-        ``runs_per_chunk=64``.
     base_mass_per_width
         Mass in kg/m that the base gains for each metre of width 2 B above the structure's own width, and loses for each
         metre below it. Default: 0, a constant base mass.
+    options
+        As in `run_cloud`, but ``free_vibration="settle"`` by default. A `folder` is that of the `DesignStudy` of these
+        arguments with ``limits=[]`` and ``runs_per_chunk=64``.
 
     Returns
     -------
@@ -393,21 +380,19 @@ def run_design(
         raise InputError(
             f"tendons must be a sequence of TendonLevel objects, but {type_description(tendons)} was given."
         )
-    matrix = study_matrix(
-        [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
-        demands=demands,
-    )  # fmt: skip
+    run, place = split_keywords({"free_vibration": "settle", **options})
+    matrix = study_matrix([structure], motions, models, run)
     levels = list(tendons)
     designs = designs_of_structure(matrix.structures[0], half_widths, levels, base_mass_per_width)
     plan = DesignPlan(matrix, designs, given, PER_CHUNK)
 
     def study() -> DesignStudy:
-        return DesignStudy.of_matrix(
-            structure, matrix, half_widths=checked_half_widths(half_widths), tendons=levels, limits=[],
-            base_mass_per_width=base_mass_per_width, scales=plan.scales, runs_per_chunk=PER_CHUNK,
+        return study_of_matrix(
+            DesignStudy, structure, matrix, run, scales=plan.scales, limits=[],
+            half_widths=checked_half_widths(half_widths), tendons=levels, base_mass_per_width=base_mass_per_width,
         )  # fmt: skip
 
-    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
+    return run_plan(plan, study=study, **place)
 
 
 def search_design(
@@ -418,16 +403,7 @@ def search_design(
     cost: DesignCost,
     model: str | Model = "MDOF-S",
     scales: float | Sequence[float] = 1.0,
-    free_vibration: float | Literal["settle"] = "settle",
-    bouc_wen: BoucWen | None = None,
-    impact: ImpactLaw | None = None,
-    workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
-    ground: GroundChoice = None,
-    progress: ProgressChoice = None,
-    demands: Demands | None = None,
-    folder: str | Path | None = None,
-    dask: str | None = None,
+    **options: Unpack[StudyKeywords],
 ) -> "pd.DataFrame":
     """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
 
@@ -438,7 +414,7 @@ def search_design(
     ----------
     structure
         A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
-    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground, demands, dask
+    motions, scales
         As in `run_cloud`.
     search
         The values of the variables, and the number of refinements.
@@ -448,11 +424,10 @@ def search_design(
         Unit costs of the width and of the forces.
     model
         One model, as in `simulate`.
-    progress
-        As in `run_cloud`, counted in designs.
-    folder
-        As in `run_cloud`; it is the folder of the `DesignStudy` with a `search` of these arguments and
-        ``runs_per_chunk=64``. Its requirements have one measure, and either levels or one hazard curve.
+    options
+        As in `run_cloud`, but ``free_vibration="settle"`` by default; `progress` is counted in designs. A `folder` is
+        that of the `DesignStudy` with a `search` of these arguments and ``runs_per_chunk=64``; its requirements have
+        one measure, and either levels or one hazard curve.
 
     Returns
     -------
@@ -482,10 +457,8 @@ def search_design(
     [9, 8]
     """
     given: Any = scales
-    matrix = study_matrix(
-        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground,
-        demands=demands,
-    )  # fmt: skip
+    run, place = split_keywords({"free_vibration": "settle", **options})
+    matrix = study_matrix([structure], motions, [model], run)
     wanted = checked_requirements(requirements)
     space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
     plan = DesignSearchPlan(matrix, space, wanted, unit_costs, given, PER_CHUNK)
@@ -497,12 +470,12 @@ def search_design(
                 "requirements: a folder stores those of one measure, with levels or with one hazard curve. Leave out "
                 "folder, or search with the others alone."
             )
-        return DesignStudy.of_matrix(
-            structure, matrix, half_widths=table.pop("half_widths"), scales=plan.scales,
+        return study_of_matrix(
+            DesignStudy, structure, matrix, run, scales=plan.scales,
+            half_widths=table.pop("half_widths"),
             base_mass_per_width=table.pop("base_mass_per_width"), search=table,
             limits=[each.limit for each in wanted], target=[each.target for each in wanted], measure=first.measure,
             level=[each.at for each in wanted] if first.hazard is None else None, hazard=first.hazard,
-            runs_per_chunk=PER_CHUNK,
         )  # fmt: skip
 
-    return run_plan(plan, workers, progress, dask=dask, folder=folder, study=study)
+    return run_plan(plan, study=study, **place)
