@@ -1,10 +1,9 @@
-"""Responses on disk: what is saved comes back, files of older versions are read, and damage is named."""
+"""Responses on disk: what is saved comes back, files of other versions are refused, and damage is named."""
 
 import contextlib
 import dataclasses
 import gc
 import json
-import math
 import pickle
 import warnings
 
@@ -198,7 +197,7 @@ def test_any_other_file(tmp_path):
     np.savez(tmp_path / "numbers.npz", response=np.zeros(3), time=np.zeros(3))
     np.savez(tmp_path / "time.npz", time=np.zeros(3))
     np.savez(tmp_path / "list.npz", response=np.array("[1]"))
-    np.savez(tmp_path / "keys.npz", response=np.array(json.dumps({"format": "rockflex-response-3"})))
+    np.savez(tmp_path / "keys.npz", response=np.array(json.dumps({"format": "rockflex-response-4"})))
     for path in tmp_path.iterdir():
         with pytest.raises(rf.InputError, match=rf"{path.name} is not a saved response"):
             rf.Response.load(path)
@@ -415,80 +414,6 @@ def test_scalars_that_do_not_fit(saved, tmp_path, kind, name, value, text):
     arrays, scalars = saved[kind]
     with pytest.raises(rf.InputError, match=rf"run\.npz is not a saved response \({text}"):
         rf.Response.load(rewritten(tmp_path, arrays, changed(scalars, name, value)))
-
-
-def test_a_file_of_an_older_version_is_read(saved, tmp_path):
-    arrays, scalars = dict(saved["simplified"][0]), saved["simplified"][1]
-    states = arrays["nodes"] = arrays.pop("states")
-    assert np.array_equal(rf.Response.load(rewritten(tmp_path, arrays, scalars)).history.states, states)
-
-
-START = rf.InitialState(rotation=0.02)
-# What the version before wrote for the block below: a base with two elastic tendons falls back onto the ground.
-OLDER = """{"format": "rockflex-response-2", "model": "rigid", "motion": "Quiet t=0.3 s", "status": "rocking",
-"max_rotation": 0.02, "time_of_max_rotation": 0.0, "max_top_displacement": 0.0, "time_of_max_top_displacement": 0.0,
-"max_base_moment": 0.0, "time_of_max_base_moment": 0.0, "max_base_shear": 0.0, "time_of_max_base_shear": 0.0,
-"max_total_top_displacement": NaN, "time_of_max_total_top_displacement": NaN,
-"max_horizontal_reaction": 244199.99999999997, "time_of_max_horizontal_reaction": 0.2610919081441764,
-"min_vertical_reaction": 1219950.0, "time_of_min_vertical_reaction": 0.2610919081441764, "max_tendon_force": 212000.0,
-"tendon_utilisation": 1.0095238095238095, "n_uplifts": 0, "n_impacts": 1, "nominal_overturning": false,
-"end_time": 0.30000000000000004, "settled": false, "lifts": true, "law": {"law": "VVELSimplified"},
-"missing_mass": false, "top_height": null, "base_mass": null, "eccentricity": 0.0, "tendons": [{"initial_force":
-200000.0, "stiffness": 1000000.0, "position": 0.4, "yield_force": 210000.0}, {"initial_force": 100000.0, "stiffness":
-500000.0, "position": -0.2, "yield_force": null}]}"""
-STATES = [
-    [0.0, 1.0, 0.0, 0.02, 0.0],
-    [0.1, 1.0, 0.0, 0.017086249659398433, -0.058344046334398485],
-    [0.2, 1.0, 0.0, 0.008303515985738825, -0.11751872861181942],
-    [0.2610919081441764, 1.0, 0.0, 0.0, -0.154438337209386],
-    [0.2610919081441764, 0.0, 0.0, 0.0, -0.0],
-    [0.30000000000000004, 0.0, 0.0, 0.0, 0.0],
-]
-
-
-def older(path, **changes):
-    """Write a file as the version before did; `changes` of its scalars, None leaves the history out."""
-    p, scalars = block(()), json.loads(OLDER) | changes
-    names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")
-    arrays = {f"properties.{name}": getattr(p, name) for name in (*names, "zeta", "translational_inertia")}
-    if scalars["tendons"] is not None:
-        arrays["states"] = np.array(STATES)
-    np.savez_compressed(path, **arrays, response=np.array(json.dumps(scalars)))
-    return path
-
-
-def test_a_file_of_the_version_before(tmp_path):
-    tendons = [rf.Tendon(2e5, 1e6, 0.4, yield_force=2.1e5), rf.Tendon(1e5, 5e5, -0.2)]
-    now = rf.simulate(block(tendons), rf.quiet_motion(0.3, dt=0.1), "rigid", initial=START, impact=rf.VVELSimplified())
-    back = rf.Response.load(older(tmp_path / "old.npz"))
-    assert back.history.model.properties.elements == tuple(tendons)
-    for name, value in now.peaks().items():
-        known = pytest.approx(value, rel=1e-12, nan_ok=True) if isinstance(value, float) else value
-        assert getattr(back, name) == known, name
-    for name in OF_ELEMENTS:
-        np.testing.assert_allclose(getattr(back, name), getattr(now, name), rtol=1e-12)
-    assert (back.tendon_yield, back.tendon_overload, back.residual_rotation) == (True, True, 0.0)
-    assert back.warnings == now.warnings
-    np.testing.assert_allclose(back.tendon_force, now.tendon_force, rtol=1e-12)
-    assert rf.Response.load(back.save(tmp_path / "again")) == back
-
-
-@pytest.mark.parametrize(
-    ("changes", "residual"),
-    [
-        ({}, math.nan),
-        ({"settled": True}, 0.0),
-        ({"status": "no_uplift"}, 0.0),
-        ({"status": "overturned", "settled": False}, math.nan),
-    ],
-)
-def test_peaks_of_the_version_before(tmp_path, changes, residual):
-    back = rf.Response.load(older(tmp_path / "old.npz", tendons=None, **changes))
-    assert back.history is None
-    assert back.max_element_force.size == back.remaining_prestress.size == 0
-    assert back.max_tendon_force == 212000.0
-    assert back.tendon_overload
-    assert back.residual_rotation == pytest.approx(residual, nan_ok=True)
 
 
 @pytest.mark.parametrize("more", [[], [rf.ViscousDamper(2e5, 0.5)], [rf.YieldingDissipator(2e7, 1e5, 0.05, 0.0)]])

@@ -2,7 +2,6 @@
 
 import io
 import json
-import math
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -11,7 +10,6 @@ from typing import Any, cast
 import numpy as np
 
 from rockflex.foundation.archives import ArchiveLimits, arrays_from_npz
-from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import check_regular_file, write_given_file
 from rockflex.foundation.registry import registered_objects
@@ -29,16 +27,11 @@ from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_checks import check_states
-from rockflex.models._state_layout import HEADER, RISE
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._peaks import (
     ELEMENT_PEAKS,
-    NONE,
     OF_STORIES,
-    balance_ratio,
-    element_peaks,
-    extremes_about_pivots,
 )
 from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import YieldingStory, element_parameters
@@ -50,7 +43,7 @@ from rockflex.structure._rocking import RockingProperties
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
 _LIMITS = ArchiveLimits(1_000, 4_000_000_000, 8_000_000_000)
-FORMAT, OLDER, OLDEST = "rockflex-response-4", "rockflex-response-3", "rockflex-response-2"
+FORMAT = "rockflex-response-4"
 PROPERTIES = (
     "omega",
     "effective_mass",
@@ -136,8 +129,7 @@ def load_response(path: Path, kinds: dict[str, type]) -> Kept:
     try:
         arrays = arrays_from_npz(path, _LIMITS)
         scalars = json.loads(str(arrays["response"]))
-        known = scalars["format"] in (FORMAT, OLDER, OLDEST)
-        kept = _response_from_file(scalars, arrays, kinds) if known else None
+        kept = _response_from_file(scalars, arrays, kinds) if scalars["format"] == FORMAT else None
     except Exception as error:  # NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
         raise InputError(f"{path} is not a saved response ({reason}). Give a file that Response.save wrote.") from error
@@ -151,22 +143,12 @@ def _response_from_file(scalars: dict[str, Any], arrays: dict[str, Any], kinds: 
         if name != "response" and values.dtype != np.float64:
             raise InputError(f"{name} must be of type float64, but is of type {values.dtype}.")
     floors = history = None
-    if "nodes" in arrays:  # as older versions named the states
-        arrays = arrays | {"states": arrays["nodes"]}
     if "states" in arrays:
-        states = arrays["states"]
-        if scalars["format"] != FORMAT:  # without vertical acceleration
-            states = np.insert(states, RISE, 0.0, axis=1)
-        history = History(_model_from_file(scalars, arrays), states)
+        history = History(_model_from_file(scalars, arrays), arrays["states"])
         check_states(history.model, history.states)
-    later = _later(scalars, history) if scalars["format"] == OLDEST else _of_elements(arrays, history)
-    if scalars["format"] != FORMAT:
-        later |= _of_ground(scalars, history)
-    if "balance_ratio" not in scalars:  # nor was the residual rotation measured from that at rest
-        later["balance_ratio"] = math.nan if history is None else _balance_ratio(scalars, history)
-        if history is not None and history.model.springs is not None:
-            later["residual_rotation"] = scalars["residual_rotation"] - history.model.rest.rotation
-    peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
+    peaks = _of_elements(arrays, history) | {
+        name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in ELEMENT_PEAKS
+    }
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
         if floors.story_drift.shape != arrays["floor_modes.heights"].shape:
@@ -176,8 +158,7 @@ def _response_from_file(scalars: dict[str, Any], arrays: dict[str, Any], kinds: 
 
 def _of_elements(arrays: dict[str, Any], history: History | None) -> dict[str, Any]:
     """Return the peaks of the elements."""
-    older = dict.fromkeys((f"elements.{name}" for name in OF_STORIES), np.zeros(0))
-    found = {name: (older | arrays)[f"elements.{name}"] for name in ELEMENT_PEAKS}
+    found = {name: arrays[f"elements.{name}"] for name in ELEMENT_PEAKS}
     found["element_yielded"] = found["element_yielded"] != 0.0
     elements = () if history is None else history.model.properties.elements
     for name, values in found.items():
@@ -188,37 +169,6 @@ def _of_elements(arrays: dict[str, Any], history: History | None) -> dict[str, A
         if values.ndim != 1 or (history is not None and values.size != known):
             raise InputError(f"{name} must have the shape ({known},), but its shape is {values.shape}.")
     return found
-
-
-def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
-    """Return the peaks that older files lack; there were only elastic tendons, and nothing kept a base open."""
-    over = bool(scalars["tendon_utilisation"] > 1.0)
-    rocks = scalars["status"] == "overturned" or (scalars["status"] == "rocking" and not scalars["settled"])
-    found = {"tendon_yield": over, "tendon_overload": over, "residual_rotation": math.nan if rocks else 0.0}
-    of_elements = NONE
-    if history is not None:
-        rotation = history.rotation
-        if scalars["status"] != "overturned":
-            found["residual_rotation"] = float(rotation[-1])
-        sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
-        largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
-        moves = extremes_about_pivots(history.model, (largest[0], largest[1]))
-        of_elements = element_peaks(history.model, moves, history.states[-1, HEADER:])
-    return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
-
-
-def _of_ground(scalars: dict[str, Any], history: History | None) -> dict[str, float]:
-    """Return the peaks of the ground that older files lack: it was rigid, and the base could not slide."""
-    uplift = 0.0
-    if scalars["max_rotation"] > 0.0:
-        uplift = math.nan if history is None else float(history.edge_uplift.max())
-    return {"max_slip": 0.0, "residual_slip": 0.0, "max_edge_uplift": uplift, "max_edge_settlement": 0.0}
-
-
-def _balance_ratio(scalars: dict[str, Any], history: History) -> float:
-    right, left = (float(np.max(side * history.rotation, initial=0.0)) for side in (1, -1))
-    largest = scalars["max_rotation"]
-    return float(balance_ratio(history.model, *((largest, left) if right >= left else (right, largest))))
 
 
 def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
@@ -242,7 +192,7 @@ def _impact_law_from_file(parameters: dict[str, Any]) -> ImpactLaw:
     return LAWS[name](**parameters)
 
 
-def _element_from_file(kind: str = "Tendon", **values: Any) -> BaseElement:
+def _element_from_file(kind: str, **values: Any) -> BaseElement:
     """Return an element from the name of its class and its parameters.
 
     Raises
@@ -265,16 +215,14 @@ def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> Rocking
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
-    name = "tendons" if scalars["format"] == OLDEST else "elements"
-    elements = [_element_from_file(**each) for each in _typed(scalars, name, list)]
-    known = {name: scalars[name] for name in KNOWN_OR_NOT}
-    known |= {name: scalars.get(name, 0.0) for name in ("eccentricity", "leaning_mass")}  # older files may lack them
-    known["stories"] = [YieldingStory(**each) for each in scalars.get("stories", [])]
+    elements = [_element_from_file(**each) for each in _typed(scalars, "elements", list)]
+    known = {name: scalars[name] for name in (*KNOWN_OR_NOT, "eccentricity", "leaning_mass")}
+    known["stories"] = [YieldingStory(**each) for each in scalars["stories"]]
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
     law = _impact_law_from_file(parameters)
-    gravity = scalars.get("gravity", GRAVITY)
+    gravity = scalars["gravity"]
     nonlinear = dict[str, Any]()
     if "complete" in scalars:
         bouc_wen = scalars["bouc_wen"]
