@@ -8,7 +8,7 @@ import pytest
 
 from builders import make_frame
 from rockflex import ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
-from rockflex.models._impact import ForgottenLaw, SidedRestitution
+from rockflex.models._impact import SidedRestitution, UnsavedLaw
 from rockflex.models._landing import velocities_after
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._quantities import Quantities
@@ -192,7 +192,7 @@ def test_the_laws_of_the_library_are_values():
     assert len({VVELSimplified(), VVELComplete(), Restitution(0.5), Restitution(0.5)}) == 3
     with pytest.raises(AttributeError):
         Restitution(0.5).e = 0.6
-    for law in (*LAWS, ForgottenLaw("Mine()", "a", "b")):
+    for law in (*LAWS, UnsavedLaw("Mine()", "a", "b")):
         assert isinstance(law, ImpactLaw)
         assert law.keeps
         assert law.loses
@@ -219,7 +219,7 @@ def test_restitutions_that_are_none(arguments, text):
 
 
 def test_a_forgotten_law_says_so():
-    law = ForgottenLaw("<Mine at 0x1>", "this", "that")
+    law = UnsavedLaw("<Mine at 0x1>", "this", "that")
     with pytest.raises(InputError) as caught:
         law.after(ALL, np.zeros(4), 1.0)
     assert str(caught.value) == ("The impact law <Mine at 0x1> was not saved with the response. Pass the law itself.")

@@ -13,7 +13,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.foundation.constants import GRAVITY
-from rockflex.models._impact import ForgottenLaw, SidedRestitution
+from rockflex.models._impact import SidedRestitution, UnsavedLaw
 from rockflex.models._rocking_model import RockingModel
 from rockflex.studies import PreparedCase
 
@@ -130,7 +130,7 @@ def test_a_law_of_ones_own_is_forgotten(tmp_path, model):
     back = rf.Response.load(run.save(tmp_path / "run"))
     assert_same(back, run)
     law = back.history.model.law
-    assert law == ForgottenLaw("Mine()", "half of the rotation", "the other half")
+    assert law == UnsavedLaw("Mine()", "half of the rotation", "the other half")
     with pytest.raises(rf.InputError, match=r"Mine\(\) was not saved with the response\. Pass the law itself"):
         rf.simulate(FRAME, MOTION, model, impact=law)
     again = rf.Response.load(back.save(tmp_path / "again"))
@@ -144,7 +144,7 @@ def test_a_subclass_is_a_law_of_ones_own(tmp_path):
 
     run = rf.simulate(FRAME, MOTION, "2DOF-C", impact=Stronger())
     law = rf.Response.load(run.save(tmp_path / "run")).history.model.law
-    assert type(law) is ForgottenLaw
+    assert type(law) is UnsavedLaw
     assert law.keeps == rf.VVELSimplified.keeps
 
 

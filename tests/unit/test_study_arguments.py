@@ -249,8 +249,8 @@ def test_a_table_of_a_file_gives_the_options_of_a_call():
 )
 def test_the_hysteresis_is_of_the_labelled_models_or_of_all_if_none_is(labels, with_hysteresis):
     models = list(map(parse_model, labels))
-    options = RunOptions.of(bouc_wen=YIELDS).among(models)
-    tied = [options.tied(model, FRAME.rocking(1)) for model in models]
+    options = RunOptions.of(bouc_wen=YIELDS).for_models(models)
+    tied = [options.model_of(model, FRAME.rocking(1)) for model in models]
     assert [model.bouc_wen is not None for model in tied] == with_hysteresis
     assert yielding_model_labels(labels) == [label for label in labels if label.endswith("-BW")]
 

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex.foundation.values import Value
-from rockflex.models._impact import ForgottenLaw
+from rockflex.models._impact import UnsavedLaw
 from rockflex.models._rocking_model import RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.structure._participation import MassNormalisedModes
@@ -196,7 +196,7 @@ VALUES = {
     rf.YieldingStories: lambda: rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05),
     rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
-    ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
+    UnsavedLaw: lambda: UnsavedLaw("Mine()", "this", "that"),
     MassNormalisedModes: lambda: VALUES[rf.ModalStructure]().modes,
     RockingModel: lambda: RockingModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05), complete=True),
 }  # fmt: skip

@@ -166,7 +166,7 @@ def choose_run_models(
             f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
         )
     for model in models:
-        tied = options.tied(model, properties)
+        tied = options.model_of(model, properties)
         if options.initial is not None:
             options.initial.state(tied)
     if by_flag and not yields:

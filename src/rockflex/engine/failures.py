@@ -56,7 +56,7 @@ def accumulation(key: Key, phase: LinearPhase | NonlinearPhase, event: int, time
     )
 
 
-def stall(key: Key, phase: NonlinearPhase, time: float) -> BaseException:
+def step_too_small(key: Key, phase: NonlinearPhase, time: float) -> BaseException:
     """No step is short enough; or a field in Python has raised an exception, which is then returned."""
     field: Any = phase.field
     failure = getattr(field, "failure", None)

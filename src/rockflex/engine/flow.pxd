@@ -34,7 +34,7 @@ cdef class Flow:
     cdef void forget(self) noexcept nogil
     cdef void enter(self, int place) noexcept nogil
     cdef void arrive(self, int place, double a, double v) noexcept nogil
-    cdef double take(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
+    cdef double take_step(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef void leave(self) noexcept nogil
     cdef void enlarge(self, double[::1] sizes) noexcept nogil
@@ -50,8 +50,8 @@ cdef class Flow:
     cdef void look_ahead(self, int place) noexcept nogil
     cdef double counted(self, int j, double value) noexcept nogil
     cdef void raise_to(self, int outs, double sample) noexcept nogil
-    cdef bint conditions_hide(self, int place) noexcept nogil
-    cdef bint peaks_hide(self, int place) noexcept nogil
+    cdef bint may_fail_within_step(self, int place) noexcept nogil
+    cdef bint may_have_interior_peak(self, int place) noexcept nogil
     cdef bint curves_hide(self, int place) noexcept nogil
     cdef void look_within(self, int place, int stage, double t, int outs) noexcept nogil
     cdef void slopes_of(self, bint outputs, int place) noexcept nogil

@@ -208,7 +208,7 @@ class Flow:
             self.phases.rates(place, a, v, START, FIRST, self.counts)
             self.known = True
 
-    def take(self, place, start, end, v, u):
+    def take_step(self, place, start, end, v, u):
         """Take a step from the place u of a sample; return the part of the sample, -1 if none is short enough."""
         longest: cython.double = 1.0 - u
         # Of steps as long as allowed the last one would be short, and the others err most; equal ones are as many.
@@ -306,17 +306,17 @@ class Flow:
             self.check(place, a, rise, START, FIRST, BELOW)
             self.told = True
         for _steps in range(OFTEN):
-            part = self.take(place, start, end, v, u)
+            part = self.take_step(place, start, end, v, u)
             if part < 0.0:
                 return u
             self.tried = True
-            if self.conditions_hide(place):
+            if self.may_fail_within_step(place):
                 return u
             if fresh:
                 self.raise_to(OUTS, sample + u)
                 fresh = False
             self.look_ahead(place)
-            if self.peaks_hide(place) or self.curves_hide(place):
+            if self.may_have_interior_peak(place) or self.curves_hide(place):
                 return u
             u = self.reached = u + part if part < 1.0 - u else 1.0
             self.accept()
@@ -366,7 +366,7 @@ class Flow:
         self.phases.look(place, outputs, (self.shaking[2], climb), 1, START, FIRST, SLOPES)
         self.phases.look(place, outputs, (self.shaking[2] + self.shaking[3], climb), 1, END, LAST, BENDS)
 
-    def conditions_hide(self, place):
+    def may_fail_within_step(self, place):
         """Whether a condition may fail within the step or at its end."""
         e: cython.int
         k: cython.int
@@ -392,7 +392,7 @@ class Flow:
                 return True
         return False
 
-    def peaks_hide(self, place):
+    def may_have_interior_peak(self, place):
         """Whether a linear output may have a new peak within the step, and not at its ends."""
         j: cython.int
         low: cython.double
@@ -476,7 +476,7 @@ class Flow:
             for j in range(self.outputs):
                 if self.counted(j, self.found[ENDS, j]) > self.high[j]:
                     return False
-        if self.peaks_hide(self.place) or self.curves_hide(self.place):
+        if self.may_have_interior_peak(self.place) or self.curves_hide(self.place):
             return False
         if t == 1.0:
             self.raise_to(ENDS, sample + self.part)

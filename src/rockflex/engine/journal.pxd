@@ -20,5 +20,5 @@ cdef class Journal:
     cpdef void begin(self) noexcept nogil
     cpdef int count(self, int kind) noexcept nogil
     cpdef int kind(self, object name)
-    cpdef meet(self, int place, tuple events)
+    cpdef register_phase(self, int place, tuple events)
     cpdef int happen(self, double time, int place, int event) except -1 nogil

@@ -19,7 +19,7 @@ class Journal:
         """The number of a name of events."""
         return self.names.setdefault(name, len(self.names))
 
-    def meet(self, place, events):
+    def register_phase(self, place, events):
         """Take note of the events of a phase."""
         rows, columns = np.shape(self.kinds)
         if place >= rows or len(events) > columns:

@@ -110,7 +110,7 @@ cdef class Peaks:
 
     cdef int widen(self, int rows) except -1
     cdef void begin(self, double[::1] one_sided) noexcept nogil
-    cdef void pass_by(self, double samples) noexcept nogil
+    cdef void set_sample_offset(self, double samples) noexcept nogil
     cdef int looks(self) noexcept nogil
     cdef int count(self) noexcept nogil
     cdef void keep(self, int count) noexcept nogil
@@ -135,8 +135,8 @@ cdef class Phases:
 
     cdef void release(self, int place) noexcept nogil
     cdef void select(self, int which) noexcept nogil
-    cdef void turn(self, int place, int which) noexcept nogil
-    cdef bint knows(self, int place, bint shakes) noexcept nogil
+    cdef void switch_system(self, int place, int which) noexcept nogil
+    cdef bint has_tables(self, int place, bint shakes) noexcept nogil
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
     cdef int shift(self, int place, (double, double) v) noexcept nogil

@@ -81,7 +81,7 @@ class Peaks:
         """The sample at which it was reached."""
         return np.asarray(self.when_)
 
-    def pass_by(self, samples):
+    def set_sample_offset(self, samples):
         """Say how many samples come before the first of the present acceleration."""
         self.log.passed = samples
 
@@ -159,7 +159,7 @@ class Phases:
         self.release(place)
         return size
 
-    def knows(self, place, shakes):
+    def has_tables(self, place, shakes):
         """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
         return self.known[place] > shakes
 
@@ -221,7 +221,7 @@ class Phases:
         self.known[place] = 1
         return content.nbytes
 
-    def shake(self, place: cython.int, which, shaken):
+    def set_vertical_tables(self, place: cython.int, which, shaken):
         """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none.
 
         Returns its memory in bytes.
@@ -231,7 +231,7 @@ class Phases:
             return 0
         content, offsets = joined([tables_in_row_groups(each, LOOPS.group) for each in shaken[3:]])
         self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
-        self.point(place, which)
+        self.bind_system(place, which)
         return content.nbytes
 
     def select(self, which):
@@ -239,9 +239,9 @@ class Phases:
         place: cython.int
         for place in range(self.count):
             if self.known[place]:
-                self.turn(place, which)
+                self.switch_system(place, which)
 
-    def turn(self, place, which):
+    def switch_system(self, place, which):
         """Take the tables of another system for one phase: they are as far away in every stack of tables."""
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
         tables: cython.pointer(cython.p_const_double) = cython.address(phase.tables.block)
@@ -266,8 +266,8 @@ class Phases:
             for k in range(18):
                 others[k] += more
 
-    def point(self, place: cython.int, which: cython.int):
-        """Take the tables of one system for one phase: those of the first, and then as `turn` does."""
+    def bind_system(self, place: cython.int, which: cython.int):
+        """Take the tables of one system for one phase: those of the first, and then as `switch_system` does."""
         content, halvings, jumps, rests, _ = self.contents[place]
         offsets: cython.Py_ssize_t[::1] = self.offsets[place]
         row: cython.double[::1] = content[0]
@@ -292,7 +292,7 @@ class Phases:
                 part += 1
         if self.shaken[place] is not None:
             self.point_shaken(place)
-        self.turn(place, which)
+        self.switch_system(place, which)
 
     def point_shaken(self, place: cython.int):
         """Take what the first system has under vertical acceleration in one phase."""
@@ -313,7 +313,7 @@ class Phases:
         for k in range(4, 22):  # from `limit` to the last of `swell`
             others[k - 4] = first + offsets[k]
 
-    def lead(self, place, outcome, following):
+    def set_next_phase(self, place, outcome, following):
         """Say which phase follows an outcome."""
         self.phases[place].following[outcome] = following
 
@@ -416,7 +416,7 @@ class Phases:
 
     # Phases that are not linear
 
-    def drive(self, place: cython.int, field: Field, floor, counted: cython.int):
+    def set_field(self, place: cython.int, field: Field, floor, counted: cython.int):
         """Say that a phase is not linear: its field, the least sizes of its moving states, and states with rates."""
         least = np.full(up8(self.n + 2), np.inf)
         least[: len(floor)] = floor

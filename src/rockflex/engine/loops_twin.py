@@ -49,7 +49,7 @@ class Peaks:
         self.kept = self.done = 0
         self.stopped, self.passed = False, 0.0
 
-    def pass_by(self, samples: float) -> None:
+    def set_sample_offset(self, samples: float) -> None:
         """Say how many samples come before the first of the present acceleration."""
         self.passed = samples
 
@@ -125,11 +125,11 @@ class Phases(Steps):
         self.known[place] = 0
         return size
 
-    def knows(self, place: int, shakes: bool) -> bool:
+    def has_tables(self, place: int, shakes: bool) -> bool:
         """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
         return self.known[place] > shakes
 
-    def shake(self, place: int, which: int, shaken: ShakenTables | None) -> int:
+    def set_vertical_tables(self, place: int, which: int, shaken: ShakenTables | None) -> int:
         """Take what a phase has under vertical acceleration; None if it has none."""
         del which
         self.phases[place].shaken, self.known[place] = shaken, 2
@@ -147,7 +147,7 @@ class Phases(Steps):
         fed = v[0] * np.asarray(x)[shaken.places] + (v[1] * np.asarray(before)[shaken.places] if k else 0.0)
         return np.concatenate((x[: self.n + 2], [v[k] if k < 2 else 0.0], fed))
 
-    def point(self, place: int, which: int) -> None:
+    def bind_system(self, place: int, which: int) -> None:
         """Take the tables of one system for one phase."""
         del place
         self.which = which
@@ -156,7 +156,7 @@ class Phases(Steps):
         """Take the tables of one system of the stack."""
         self.which = which
 
-    def lead(self, place: int, outcome: int, following: int) -> None:
+    def set_next_phase(self, place: int, outcome: int, following: int) -> None:
         """Say which phase follows an outcome."""
         self.phases[place].following[outcome] = following
 

@@ -123,7 +123,7 @@ class Oscillator:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def look_up(self, work: cython.Py_ssize_t) -> cython.int:
+    def check_stop_request(self, work: cython.Py_ssize_t) -> cython.int:
         """After some work, see whether there was Ctrl-C."""
         self.work += work
         if self.work >= STRETCH:
@@ -208,7 +208,7 @@ class Oscillator:
             us[0] = vs[0] = 0.0
         while first < a.shape[0]:
             self.march_piece(a, us, vs, first, min(first + PIECE, a.shape[0] - 1))
-            self.look_up(PIECE)
+            self.check_stop_request(PIECE)
             first += PIECE
         return 0
 
@@ -258,12 +258,12 @@ class Oscillator:
         self.march(a, motion[0], motion[1])
         while first < a.shape[0]:
             self.look_at_samples(motion[0], motion[1], first, min(first + PIECE, a.shape[0]))
-            self.look_up(PIECE)
+            self.check_stop_request(PIECE)
             first += PIECE
         first = 0
         while first < a.shape[0]:
             self.look_between(a, motion[0], motion[1], first, min(first + PIECE, a.shape[0] - 1))
-            self.look_up(2 * PIECE)
+            self.check_stop_request(2 * PIECE)
             first += PIECE
         return 0
 
@@ -352,7 +352,7 @@ class Oscillator:
         while low < self.h and (
             max(fabs(line - fall * low), fabs(end)) + rest > self.sd or fabs(fall) + self.omega * rest > self.sv
         ):
-            self.look_up(WITHIN)
+            self.check_stop_request(WITHIN)
             high = zero if zero < self.h else self.h
             v_high = self.state(high, u, v, a, slope)[1]
             self.sv = max(self.sv, fabs(v_high))
@@ -412,32 +412,32 @@ class Oscillator:
         directions: cython.Py_ssize_t = 2 + peaks.shape[0]
         least: cython.double
         farther: cython.double
-        self.look_up(COARSE * directions)
+        self.check_stop_request(COARSE * directions)
         self.march(a[0], motion[0], motion[1])
         self.march(a[1], motion[2], motion[3])
         for k in range(last + 1):
             motion[4, k] = hypot(motion[0, k], motion[2, k])
             if k % PIECE == 0:
-                self.look_up(2 * PIECE)
+                self.check_stop_request(2 * PIECE)
         for k in range(min(COARSE, last + 1)):
             self.look_round(k * last // COARSE, turns, motion, peaks)
         # Where the oscillator stays closer than the smallest peak so far, it raises none.
         least = smallest(peaks)
         for k in range(last + 1):
             if k % PIECE == 0:
-                self.look_up(PIECE)
+                self.check_stop_request(PIECE)
             if motion[4, k] > least:
                 self.look_round(k, turns, motion, peaks)
                 least = smallest(peaks)
-                self.look_up(directions)
+                self.check_stop_request(directions)
         for k in range(last):
             if k % PIECE == 0:
-                self.look_up(4 * PIECE)
+                self.check_stop_request(4 * PIECE)
             farther = self.reach(k, a, motion)
             if max(motion[4, k], motion[4, k + 1]) + farther > least:
                 self.look_inside(k, farther, a, turns, motion, peaks)
                 least = smallest(peaks)
-                self.look_up(2 * directions)
+                self.check_stop_request(2 * directions)
         return 0
 
     @cython.cfunc

@@ -25,9 +25,9 @@ cdef class Decay:
 
 
 @cython.final
-cdef class Fading:
+cdef class PhaseDecay:
     cdef dict known
     cdef readonly Decay decay  # in the last phase that was taken, with its place and system
     cdef readonly int place, which
 
-    cpdef Py_ssize_t take(self, phase, int place, int which) except -1
+    cpdef Py_ssize_t prepare_phase(self, phase, int place, int which) except -1

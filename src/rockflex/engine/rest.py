@@ -148,13 +148,13 @@ class Decay:
 
 @cython.final
 @cython.cclass
-class Fading:
+class PhaseDecay:
     """How motion fades in the phases in which a free vibration has been asked for its end, for systems of a stack."""
 
     def __init__(self):
         self.known, self.place, self.which = {}, -1, -1
 
-    def take(self, phase, place, which):
+    def prepare_phase(self, phase, place, which):
         """Take a phase, and its place; look it up, or find how motion fades in it. Returns the memory for that."""
         of_phase, more = self.known.setdefault(place, {}), 0
         if which not in of_phase:

@@ -2,7 +2,7 @@ from rockflex.engine.batch cimport Batch
 from rockflex.engine.flow cimport Flow
 from rockflex.engine.journal cimport Journal
 from rockflex.engine.loops cimport Peaks, Phases
-from rockflex.engine.rest cimport Fading
+from rockflex.engine.rest cimport PhaseDecay
 from rockflex.engine.series cimport Series
 
 
@@ -23,7 +23,7 @@ cdef class Run:
     cdef long long[::1] used  # when each of them was used last, by the clock
     cdef long long clock
     cdef dict places  # of the phases, by their keys
-    cdef Fading fading
+    cdef PhaseDecay decay
     cdef list mirrors  # of the last phases, see `tables_of`
     cdef Phases phases
     cdef int now  # place of the present phase
@@ -69,13 +69,13 @@ cdef class Run:
     cdef int coast_over(self, long long samples, bint history) except -1 nogil
     cdef int advance_over(self, const double[::1] a, const double[::1] v, double[:, ::1] states) except -1 nogil
     cdef double rise_at(self, const double[::1] v, int i) noexcept nogil
-    cdef int look_up(self) except -1 nogil
+    cdef int check_stop_request(self) except -1 nogil
     cdef int settle_over(self, long long most, bint history) except -1 nogil
-    cdef int traverse(self, int i, double start, double end, (double, double) v, bint history) except -1 nogil
+    cdef int advance_sample_with_events(self, int i, double start, double end, (double, double) v, bint history) except -1 nogil
     cdef int leave(self, int event, double sample, double a, double v) except -1 nogil
-    cdef int meet(self, int event, int outcome) except -1
+    cdef int resolve_next_phase(self, int event, int outcome) except -1
     cdef refuse(self, int event, double sample)
-    cdef void take(self, int outcome) noexcept nogil
-    cdef stall(self, double sample)
-    cdef ask(self, int event, double a, double v)
+    cdef void apply_jump_matrix(self, int outcome) noexcept nogil
+    cdef raise_step_too_small(self, double sample)
+    cdef call_jump_function(self, int event, double a, double v)
     cdef int search(self, const double[::1] a, const double[::1] v, bint finish) except -1 nogil

@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 from rockflex.engine import failures
-from rockflex.engine.rest import Fading
+from rockflex.engine.rest import PhaseDecay
 from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
@@ -25,7 +25,7 @@ if cython.compiled:
     from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
     from cython.cimports.rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases
-    from cython.cimports.rockflex.engine.rest import Fading
+    from cython.cimports.rockflex.engine.rest import PhaseDecay
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
@@ -95,7 +95,7 @@ class Run:
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
-        self.phase_bytes, self.failed, self.first, self.fading, self.shakes = 0, False, 0, Fading(), False
+        self.phase_bytes, self.failed, self.first, self.decay, self.shakes = 0, False, 0, PhaseDecay(), False
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -215,7 +215,7 @@ class Run:
         """Use a phase that has been met, and prepare it if it was forgotten."""
         self.clock += 1
         self.used[place] = self.clock
-        if not self.phases.knows(place, self.shakes):
+        if not self.phases.has_tables(place, self.shakes):
             with cython.gil:
                 self.renew(place)
         if self.phases.halvings(place) < 0:  # of this system; others of the stack may have such a phase
@@ -225,10 +225,12 @@ class Run:
 
     def renew(self, place):
         """Prepare a phase, or what it lacks for vertical acceleration."""
-        if not self.phases.knows(place, False):
+        if not self.phases.has_tables(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            self.phase_bytes += self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
+            self.phase_bytes += self.phases.set_vertical_tables(
+                place, self.which, shaken_of(self.met[place][1], self.h)
+            )
         return 0
 
     def prepare(self, key, place):
@@ -238,9 +240,9 @@ class Run:
             self.forget()
         self.phase_bytes += self.phases.add(place, tables, phase.events, self.h) + phase.nbytes
         if isinstance(phase, NonlinearPhase):
-            self.phases.drive(place, phase.field, phase.scale, phase.counted)
+            self.phases.set_field(place, phase.field, phase.scale, phase.counted)
             self.flow.know(phase, place)
-        self.phases.point(place, self.which)
+        self.phases.bind_system(place, self.which)
         self.met[place : place + 1] = [(key, phase)]
         self.places[key] = place
         if place == self.used.shape[0]:
@@ -248,15 +250,15 @@ class Run:
         self.series.widen(len(phase.events))
         self.peaks_.widen(tables.rows)
         self.stretch = min(self.stretch, STRETCH // (PER_SAMPLE + self.n * (self.n + tables.rows) // 4))
-        self.journal.meet(place, phase.events)
+        self.journal.register_phase(place, phase.events)
         return place
 
     def forget(self):
         """Forget the phases that were not used for longest, all but a half of the memory that they may take."""
         place: cython.int
         for place in np.argsort(self.used[: len(self.met)]).tolist():
-            if place != self.now and self.phases.knows(place, False) and not self.phases.nonlinear(place):
-                self.phase_bytes -= self.phases.drop(place) + self.met[place][1].nbytes + self.fading.drop(place)
+            if place != self.now and self.phases.has_tables(place, False) and not self.phases.nonlinear(place):
+                self.phase_bytes -= self.phases.drop(place) + self.met[place][1].nbytes + self.decay.drop(place)
                 self.met[place] = self.met[place][0], None
             if self.phase_bytes <= self.memory // 2:
                 break
@@ -317,7 +319,7 @@ class Run:
             if batch.settles:
                 rested = self.settle_over(batch.free[run], history)
                 if rested and not self.phases.nonlinear(self.now):
-                    self.fading.decay.bring_to_rest(self.y)
+                    self.decay.decay.bring_to_rest(self.y)
             else:
                 self.coast_over(batch.free[run], history)
             outcome, end = 1 if self.ended else 2 if rested else 0, self.end if self.ended else self.passed * self.h
@@ -334,7 +336,7 @@ class Run:
         self.failed = True
         self.shakes = rise.shape[0] > 0
         self.load(self.now)
-        self.peaks_.pass_by(self.passed)
+        self.peaks_.set_sample_offset(self.passed)
         if history and not self.ended:
             if self.scratch.shape[0] <= max(last, 1):
                 with cython.gil:
@@ -393,11 +395,13 @@ class Run:
                     self.journal.keep(self.passed + j, a[j], self.rise_at(v, j), states[j], self.now)
             self.reached = i
             if self.peaks_.looks():
-                self.traverse(i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history)
+                self.advance_sample_with_events(
+                    i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history
+                )
                 i += 1
             elif i < last and self.peaks_.count() + BLOCK > CANDIDATES and not self.phases.nonlinear(self.now):
                 self.search(a, v, False)  # otherwise it has paused to look up, which must not change what is counted
-            self.look_up()
+            self.check_stop_request()
         self.search(a, v, True)
         return i
 
@@ -405,7 +409,7 @@ class Run:
         """The vertical acceleration at a sample."""
         return v[i] if v.shape[0] > 0 else 0.0
 
-    def look_up(self):
+    def check_stop_request(self):
         """After a stretch of work, see whether the run must end."""
         if self.peaks_.work() >= self.peaks_.pause():
             with cython.gil:
@@ -437,10 +441,10 @@ class Run:
                 if self.phases.nonlinear(self.now):
                     wait = self.flow.time_to_rest(self.now)
                 else:
-                    if self.fading.place != self.now or self.fading.which != self.which:
+                    if self.decay.place != self.now or self.decay.which != self.which:
                         with cython.gil:
-                            self.phase_bytes += self.fading.take(self.met[self.now][1], self.now, self.which)
-                    wait = self.fading.decay.time_to_rest(self.y, self.high, self.one_sided)
+                            self.phase_bytes += self.decay.prepare_phase(self.met[self.now][1], self.now, self.which)
+                    wait = self.decay.decay.time_to_rest(self.y, self.high, self.one_sided)
                 if wait == 0.0:
                     return 1
                 asks = self.passed * self.h + wait
@@ -449,7 +453,7 @@ class Run:
             self.proceed(self.quiet, self.still, history)
         return 0
 
-    def traverse(self, i, start, end, v, history):
+    def advance_sample_with_events(self, i, start, end, v, history):
         """Advance over a sample in which something may happen."""
         u: cython.double = self.flow.reached if self.phases.nonlinear(self.now) else 0.0  # the part that has passed
         a: cython.double
@@ -461,7 +465,7 @@ class Run:
         at_once: cython.int = 0
         in_sample: cython.int = 0
         while u < 1.0:
-            self.look_up()
+            self.check_stop_request()
             moves = self.phases.nonlinear(self.now) and not self.flow.tried
             if moves and self.flow.cross(self.now, start, end, v, u, self.passed + i) > u:
                 u, at_once = self.flow.reached, 0
@@ -469,7 +473,7 @@ class Run:
             part = self.series.expand(self.now, start, end, v, u)
             if part < 0.0:
                 with cython.gil:
-                    self.stall(self.passed + i + u)
+                    self.raise_step_too_small(self.passed + i + u)
             t, event = self.series.first_event()
             if t > 0.0:
                 self.series.raise_peaks(t, self.passed + i + u, self.unbounded)
@@ -505,7 +509,7 @@ class Run:
         self.journal.happen(self.end, self.now, event)
         if self.phases.following(self.now, outcome) == ASKED:
             with cython.gil:
-                self.ask(event, a, v)
+                self.call_jump_function(event, a, v)
             return 0
         if chosen >= 0:
             outcome += chosen
@@ -514,14 +518,14 @@ class Run:
             with cython.gil:
                 raise self.met[self.now][1].events[event].jump.error()
         else:
-            self.take(outcome)
+            self.apply_jump_matrix(outcome)
             if self.phases.rests(self.now, event, self.y, a, v):
                 outcome += 1
-                self.take(outcome)
+                self.apply_jump_matrix(outcome)
         following: cython.int = self.phases.following(self.now, outcome)
         if following == UNKNOWN:
             with cython.gil:
-                following = self.meet(event, outcome)
+                following = self.resolve_next_phase(event, outcome)
         if following == ENDS:
             self.ended = True
         else:
@@ -541,12 +545,12 @@ class Run:
         """Raise the error of a motion that overflows within a step."""
         raise failures.endless(*self.met[place], self.which, self.h)
 
-    def meet(self, event, outcome):
+    def resolve_next_phase(self, event, outcome):
         """Return the place of the phase that follows an outcome for the first time."""
         left = self.met[self.now][1].events[event]
         other = left.other if left.rest is None else left.rest.target
         following: cython.int = self.enter(left.target if outcome == 2 * event else other)
-        self.phases.lead(self.now, outcome, following)
+        self.phases.set_next_phase(self.now, outcome, following)
         return following
 
     def refuse(self, event, sample):
@@ -554,20 +558,20 @@ class Run:
         self.failure = "accumulation"
         raise failures.accumulation(*self.met[self.now], event, sample * self.h)
 
-    def take(self, outcome):
+    def apply_jump_matrix(self, outcome):
         """Multiply the state by the matrix of an outcome."""
         if self.phases.jump(self.now, outcome, False, self.y, self.workspace):
             self.phases.jump(self.now, outcome, True, self.sizes, self.workspace)
 
-    def stall(self, sample):
+    def raise_step_too_small(self, sample):
         """Raise the error of a motion for which no step is short enough."""
         self.failure = "stall"
-        raise failures.stall(*self.met[self.now], sample * self.h)
+        raise failures.step_too_small(*self.met[self.now], sample * self.h)
 
-    def ask(self, event, a, v):
+    def call_jump_function(self, event, a, v):
         """Let a function say what follows an event."""
         y, sizes = np.asarray(self.y)[: self.n], np.asarray(self.sizes)[: self.n]
-        y[:], target = self.met[self.now][1].events[event].ask(y, a, v)
+        y[:], target = self.met[self.now][1].events[event].apply_jump(y, a, v)
         np.maximum(sizes, np.abs(y), out=sizes)
         if target is None:
             self.ended = True
@@ -579,7 +583,7 @@ class Run:
         r: cython.int
         i: cython.int
         u: cython.double
-        kept: cython.int = self.series.sift()
+        kept: cython.int = self.series.drop_hopeless_samples()
         if kept == 0 or (not finish and kept <= CANDIDATES // 2):
             return 0
         self.before[:] = self.y
@@ -590,7 +594,7 @@ class Run:
             self.series.begin_search(r)
             u = 0.0
             while u < 1.0:
-                self.look_up()
+                self.check_stop_request()
                 u = self.series.search(
                     r, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), self.passed + i, u
                 )

@@ -27,7 +27,7 @@ cdef class Series:
     cdef void sum_up(self, int order) noexcept nogil
     cdef void skip(self) noexcept nogil
     cdef void move(self, double t) noexcept nogil
-    cdef int sift(self) noexcept nogil
+    cdef int drop_hopeless_samples(self) noexcept nogil
     cdef int candidate(self, int r) noexcept nogil
     cdef int phase_of(self, int r) noexcept nogil
     cdef void begin_search(self, int r) noexcept nogil

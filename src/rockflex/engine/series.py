@@ -150,7 +150,7 @@ class Series:
         self.phases.amounts(self.series, self.terms, t, self.sizes)
         self.phases.evaluate(self.series, self.terms, t, self.y)
 
-    def sift(self):
+    def drop_hopeless_samples(self):
         """Drop the samples that cannot have higher peaks than those found so far; the number of the others."""
         r: cython.int
         j: cython.int

@@ -38,7 +38,7 @@ class Steps:
         self.n, self.states = states, up8(states + 2)
         self.rows, self.found = np.zeros((ROWS, self.states)), np.zeros((FOUND, outputs))
 
-    def drive(self, place: int, field: Field, floor: Array, counted: int) -> None:
+    def set_field(self, place: int, field: Field, floor: Array, counted: int) -> None:
         """Say that a phase is not linear: its field, the least sizes of its moving states, and states with rates."""
         self.phases[place].field, self.phases[place].floor, self.phases[place].counted = field, floor, counted
         if self.found.shape[1] < len(self._events(place)):

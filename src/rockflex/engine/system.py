@@ -146,7 +146,7 @@ class Event:
         if callable(self.jump):
             object.__setattr__(self, "third", _takes_three(self.jump))
 
-    def ask(self, state: Array, acceleration: float, vertical: float = 0.0) -> tuple[Array, Key | None]:
+    def apply_jump(self, state: Array, acceleration: float, vertical: float = 0.0) -> tuple[Array, Key | None]:
         """The state after a jump that is a function, and the key of the phase that follows."""
         assert callable(self.jump)
         more = (vertical,) if self.third else ()

@@ -32,7 +32,7 @@ def bordered_system_of(model: RockingModel, equations: BaseEquations, freed: Boo
     if free.size:
         kept = inertia[np.ix_(free, free)]
         if not np.linalg.det(kept) > JAMMED * np.prod(np.diag(kept)):
-            raise InputError(_jammed(model))
+            raise InputError(_no_sliding_solution(model))
         flexibility[np.ix_(free, free)] = np.linalg.inv(kept)
     return BorderedSystem(
         coupling=coupling,
@@ -42,12 +42,12 @@ def bordered_system_of(model: RockingModel, equations: BaseEquations, freed: Boo
         stiffness=equations.stiffness,
         constant=equations.constant,
         drive=equations.ground + leverage.sum(axis=1),
-        recall=equations.recall,
+        internal_factor=equations.internal_factor,
         freed=freed,
     )
 
 
-def _jammed(model: RockingModel) -> str:
+def _no_sliding_solution(model: RockingModel) -> str:
     p = model.properties
     if p.horizontal_mass - p.effective_mass.sum() <= JAMMED * p.m_tot:
         return (
@@ -75,7 +75,7 @@ def accelerations_of(model: RockingModel, key: Key) -> Array:
     of_base = forces[:, layout.rotation : layout.rotation + 2 * b]
     of_base[:, ::2] -= bordered_system.stiffness
     of_base[:, 1::2] -= bordered_system.damping
-    forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.recall
+    forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.internal_factor
     forces[:, -2] += bordered_system.drive
     forces[:, -1] += bordered_system.constant
     rows[n:] = bordered_system.flexibility @ forces

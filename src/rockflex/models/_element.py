@@ -17,20 +17,23 @@ BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 
 class ElementTension(NamedTuple):
-    """Tension of an element on one branch: F = stiffness δ + damping δ' + force + recall m; m is internal."""
+    """Tension of an element on one branch: F = stiffness δ + damping δ' + force + internal_factor m; m is internal."""
 
     stiffness: float = 0.0
     damping: float = 0.0
     force: float = 0.0
-    recall: float = 0.0
+    internal_factor: float = 0.0
 
 
 class BranchLimit(NamedTuple):
-    """An elongation δ = place + recall m that ends a branch, reached from below if `upper`, and the next branch."""
+    """An elongation δ = place + internal_factor m that ends a branch, and the next branch.
+
+    It is reached from below if `upper`.
+    """
 
     upper: bool
     place: float
-    recall: float
+    internal_factor: float
     branch: int
 
 
@@ -65,11 +68,11 @@ class Element(Protocol):
         """Its branches; a run starts on the first."""
         ...
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         """Return the tension on a branch."""
         ...
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         """Return the elongations that end a branch."""
         ...
 
@@ -77,7 +80,7 @@ class Element(Protocol):
         """Return the sign of δ' on a branch that ends where δ' vanishes; 0 on others."""
         ...
 
-    def turning(self, branch: int) -> float | None:
+    def reversal_offset(self, branch: int) -> float | None:
         """Return δ - m where the elongation turns back on a branch that yields, which ends it; None on others."""
         ...
 
@@ -89,11 +92,11 @@ class Element(Protocol):
         """Return the branch after the elongation has begun to change, with the sign of δ'; 0 if it does not."""
         ...
 
-    def mark(self, branch: int) -> float | None:
+    def branch_code(self, branch: int) -> float | None:
         """Return the last of its internal variables where that tells the branch; None where it does not."""
         ...
 
-    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         """Return the branch and the internal variables after an element as built has been brought to δ in m."""
         ...
 
@@ -110,7 +113,7 @@ class Element(Protocol):
         ...
 
 
-class Unbreakable:
+class ElementDefaults:
     """What is common to elements without an internal variable."""
 
     @property
@@ -134,7 +137,7 @@ class Unbreakable:
         return np.zeros(sweep.shape)
 
 
-class WithoutMemory(Unbreakable):
+class WithoutMemory(ElementDefaults):
     """What is common to elements without an internal variable, most of which have one branch."""
 
     @property
@@ -145,7 +148,7 @@ class WithoutMemory(Unbreakable):
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC,)
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         del branch
         return ()
 
@@ -153,7 +156,7 @@ class WithoutMemory(Unbreakable):
         del branch
         return 0
 
-    def turning(self, branch: int) -> float | None:
+    def reversal_offset(self, branch: int) -> float | None:
         del branch
 
     def stopped(self, branch: int) -> int:
@@ -163,10 +166,10 @@ class WithoutMemory(Unbreakable):
         del direction
         return branch
 
-    def mark(self, branch: int) -> float | None:
+    def branch_code(self, branch: int) -> float | None:
         del branch
 
-    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         return int(self.branch_at(np.array([elongation]), np.zeros((1, 0)))[0]), ()
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
@@ -186,10 +189,10 @@ class ElasticElement(WithoutMemory):
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC, SLACK) if self.stiffness > 0.0 else (ELASTIC,)
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         return ElementTension() if branch == SLACK else ElementTension(self.stiffness, 0.0, self.initial_force)
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         if self.stiffness == 0.0:
             return ()
         slack = branch == SLACK
@@ -215,7 +218,7 @@ class ViscousElement(WithoutMemory):
     coefficient: float
     position: float | None
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         del branch
         return ElementTension(damping=self.coefficient)
 
@@ -258,7 +261,7 @@ class YieldingElement:
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC, UP, DOWN, SLACK, BROKEN)
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         k, a, e0 = self.stiffness, self.ratio, self.stretched
         if branch == ELASTIC:
             return ElementTension(k, 0.0, k * e0, -(1.0 - a) * k)
@@ -267,7 +270,7 @@ class YieldingElement:
             return ElementTension(a * k, 0.0, a * k * e0 + sign * (1.0 - a) * self.yield_force)
         return ElementTension()
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         reach, e0 = self.yield_force / self.stiffness, self.stretched
         breaks = () if np.isinf(self.rupture) else (BranchLimit(True, self.rupture, 0.0, BROKEN),)
         empty = 1.0 - self.ratio
@@ -288,7 +291,7 @@ class YieldingElement:
     def direction(self, branch: int) -> int:
         return 1 if branch == UP else -1 if branch == DOWN else 0
 
-    def turning(self, branch: int) -> float | None:
+    def reversal_offset(self, branch: int) -> float | None:
         sign = self.direction(branch)
         return None if sign == 0 else sign * self.yield_force / self.stiffness - self.stretched
 
@@ -299,10 +302,10 @@ class YieldingElement:
         del direction
         return branch
 
-    def mark(self, branch: int) -> float | None:
+    def branch_code(self, branch: int) -> float | None:
         return BROKEN_FOR_GOOD if branch == BROKEN else None
 
-    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         stretch, reach = elongation + self.stretched, self.yield_force / self.stiffness
         if elongation >= self.rupture:
             memory = BROKEN_FOR_GOOD
@@ -349,8 +352,8 @@ class YieldingElement:
 class YieldingStoryElement(YieldingElement):
     """A story that yields, less its elastic part k δ, which belongs to the modes."""
 
-    def pull(self, branch: int) -> ElementTension:
-        whole = super().pull(branch)
+    def tension(self, branch: int) -> ElementTension:
+        whole = super().tension(branch)
         return whole._replace(stiffness=whole.stiffness - self.stiffness)
 
     def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
@@ -360,7 +363,7 @@ class YieldingStoryElement(YieldingElement):
 
 
 @dataclass(frozen=True)
-class FrictionElement(Unbreakable):
+class FrictionElement(ElementDefaults):
     """A friction damper: F = ± F_0 while it slides, less while it sticks. It remembers its direction, 1, 0 or -1."""
 
     force: float
@@ -374,17 +377,17 @@ class FrictionElement(Unbreakable):
     def branches(self) -> tuple[int, ...]:
         return (HELD, OUTWARD, INWARD)
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         return ElementTension(force=self.direction(branch) * self.force)
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         del branch
         return ()
 
     def direction(self, branch: int) -> int:
         return 1 if branch == OUTWARD else -1 if branch == INWARD else 0
 
-    def turning(self, branch: int) -> float | None:
+    def reversal_offset(self, branch: int) -> float | None:
         del branch
 
     def stopped(self, branch: int) -> int:
@@ -395,10 +398,10 @@ class FrictionElement(Unbreakable):
         del branch
         return OUTWARD if direction > 0 else INWARD if direction < 0 else HELD
 
-    def mark(self, branch: int) -> float | None:
+    def branch_code(self, branch: int) -> float | None:
         return float(self.direction(branch))
 
-    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         del elongation
         return HELD, (0.0,)
 
@@ -446,11 +449,11 @@ class LawElement:
     def branches(self) -> tuple[int, ...]:
         return tuple(range(len(self.parts)))
 
-    def pull(self, branch: int) -> ElementTension:
+    def tension(self, branch: int) -> ElementTension:
         part = self.parts[branch]
         return ElementTension(part.stiffness, 0.0, part.force, part.internal)
 
-    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         ends = self.parts[branch].ends
         return tuple(BranchLimit(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
 
@@ -464,7 +467,7 @@ class LawElement:
     def direction(self, branch: int) -> int:
         return self.parts[branch].yields
 
-    def turning(self, branch: int) -> float | None:
+    def reversal_offset(self, branch: int) -> float | None:
         return self.parts[branch].offset if self.parts[branch].yields else None
 
     def stopped(self, branch: int) -> int:
@@ -474,10 +477,10 @@ class LawElement:
         del direction
         return branch
 
-    def mark(self, branch: int) -> float | None:
+    def branch_code(self, branch: int) -> float | None:
         return float(branch)
 
-    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         state = slow_path(self.law, [elongation])[-1]
         place = self.places[state.branch]
         return place, (state.internal, float(place))

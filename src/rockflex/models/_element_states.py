@@ -45,7 +45,7 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
         memory = layout.memory
         for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
             if each.stretches is not None:
-                offset = each.turning(branch)
+                offset = each.reversal_offset(branch)
                 kept = np.nan if each.broken(branch) else vector[:, memory]
                 found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
             memory += each.n_internal

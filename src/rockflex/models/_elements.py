@@ -44,7 +44,7 @@ def weight_equations(
         stiffness=-properties.l0r * gravity,
         constant=-side * (properties.m_tot * gravity * pivot.arm),
         ground=-properties.l0r,
-        recall=np.zeros(n_internal),
+        internal_factor=np.zeros(n_internal),
     )
 
 
@@ -116,7 +116,7 @@ def base_equations_of(
 ) -> BaseEquations:
     """Return the sum of the equations of the base and of all elements on their branches, about a pivot.
 
-    An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + recall m).
+    An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + internal_factor m).
     """
     side, known, count = key[0], internal_places(elements), internal_count(elements)
     total = weight_equations(properties, side, count, gravity)
@@ -124,11 +124,14 @@ def base_equations_of(
         r = arm_of_element(properties, each, side)
         if r == 0.0:
             continue
-        pull, recall = each.pull(branch), np.zeros(count)
+        pull, internal_factor = each.tension(branch), np.zeros(count)
         if place in known:
-            recall[known[place]] = -side * pull.recall * r
+            internal_factor[known[place]] = -side * pull.internal_factor * r
         total = total + BaseEquations.on_rotation(
-            damping=pull.damping * r**2, stiffness=pull.stiffness * r**2, constant=-side * pull.force * r, recall=recall
+            damping=pull.damping * r**2,
+            stiffness=pull.stiffness * r**2,
+            constant=-side * pull.force * r,
+            internal_factor=internal_factor,
         )
     return total
 
@@ -145,7 +148,7 @@ def element_force_sums(properties: RockingProperties, elements: tuple[Element, .
     terms: list[tuple[float, ...]] = []
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r = arm_of_element(properties, each, key[0]) if key[0] != CLOSED else 0.0
-        k, c, f, g = each.pull(branch)
+        k, c, f, g = each.tension(branch)
         terms.append((f * r, k * r**2, c * r**2, f, k * r, c * r))
         if place in known:
             total[MOMENT, 1 + known[place]], total[FORCE, 1 + known[place]] = g * r, g
@@ -162,7 +165,7 @@ def is_in_reach(stop: BranchLimit, arm: float) -> bool:
     None makes a tendon between the pivots slack that has not yielded: the base lands first.
     """
     outer = stop.upper == (arm > 0.0)
-    return arm != 0.0 and (stop.recall != 0.0 or stop.place / arm > 0.0 or (outer and stop.place == 0.0))
+    return arm != 0.0 and (stop.internal_factor != 0.0 or stop.place / arm > 0.0 or (outer and stop.place == 0.0))
 
 
 def direction_of_yielding(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> int:
@@ -178,7 +181,7 @@ def internal_variables_of_branches(elements: tuple[Element, ...], key: Key) -> t
     """Return the memories that have a value of their own on the branches, by index."""
     known = internal_places(elements)
     last = {place: first + elements[place].n_internal - 1 for place, first in known.items()}
-    marks = ((index, elements[place].mark(key[1 + place])) for place, index in last.items())
+    marks = ((index, elements[place].branch_code(key[1 + place])) for place, index in last.items())
     return tuple((index, mark) for index, mark in marks if mark is not None)
 
 

@@ -96,7 +96,7 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs, *,
 def _pose_at_rest_on_springs(label: str, properties: RockingProperties, springs: Springs, toppling: float) -> Pose:
     """Return the pose at rest with a moment of the weight in N m/rad."""
     p = properties
-    under = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
+    under = [(each.position, each.tension(each.branches[0]).force) for each in elements_of(p)]
     pulls = [(position, force) for position, force in under if position is not None]
     forces = np.array([sum(x * force for x, force in pulls), -p.m_tot * GRAVITY - sum(force for _, force in pulls)])
     pressed = np.ones(springs.n, dtype=bool)

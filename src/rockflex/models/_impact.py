@@ -191,7 +191,7 @@ class SidedRestitution:
 
 
 @dataclass(frozen=True)
-class ForgottenLaw:
+class UnsavedLaw:
     """Stands for a user-defined law in a loaded response: its description, but not its formula."""
 
     description: str

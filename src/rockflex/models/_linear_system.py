@@ -211,23 +211,23 @@ class LinearSystemBase:
         """What ends a phase."""
         raise NotImplementedError
 
-    def stops(self, place: int, key: Key, branch: int) -> list[tuple[Array, int, float]]:
+    def limit_rows(self, place: int, key: Key, branch: int) -> list[tuple[Array, int, float]]:
         """What ends the branch of an element: condition, next branch, and the scale of the condition."""
         each, found = self.model.elements[place], list[tuple[Array, int, float]]()
-        for stop in each.stops(branch):
+        for stop in each.limits(branch):
             way = 1.0 if stop.upper else -1.0
             row = -self.stretch(place, key)
             row[-1] += stop.place
             if place in self.bars:
-                row += stop.recall * self.stretch_in(place, key)
-                row[self.bars[place]] -= stop.recall
+                row += stop.internal_factor * self.stretch_in(place, key)
+                row[self.bars[place]] -= stop.internal_factor
             found.append((way * row, stop.branch, abs(stop.place)))
         return found
 
     def begun(self, place: int, branch: int) -> Array | None:
         """The jump as an element begins a branch: one that yields without any elastic stretch has none, to the bit."""
         each = self.model.elements[place]
-        offset = each.turning(branch) if place in self.bars else None
+        offset = each.reversal_offset(branch) if place in self.bars else None
         return (
             self.without(self.bars[place]) if offset is not None and offset + (each.stretches or 0.0) == 0.0 else None
         )
@@ -252,7 +252,7 @@ class LinearSystemBase:
     def _offset(self, place: int, key: Key) -> float | None:
         """The elastic stretch of a bar that yields; None if it does not."""
         bar = self.model.elements[place]
-        offset = bar.turning(self.model.element_key(key)[1 + place])
+        offset = bar.reversal_offset(self.model.element_key(key)[1 + place])
         return None if offset is None else offset + (bar.stretches or 0.0)
 
     def states_of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
@@ -272,7 +272,7 @@ class LinearSystemBase:
                 if history:
                     begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
-            marks = np.array([each.mark(model.element_key(key)[1 + place]) for key in keys], dtype=float)[places]
+            marks = np.array([each.branch_code(model.element_key(key)[1 + place]) for key in keys], dtype=float)[places]
             last = found[:, model.layout.memory + index + each.n_internal - 1]
             last[:] = np.where(np.isnan(marks), last, marks)  # NaN where there is none
         if model.layout.n_internal > internal_count(model.elements):
@@ -289,7 +289,7 @@ class LinearSystemBase:
         def other(branch: int) -> Key:
             return model.with_branches(key, (*branches[:place], branch, *branches[place + 1 :]))
 
-        for row, following, scale in self.stops(place, key, branch):
+        for row, following, scale in self.limit_rows(place, key, branch):
             jump = self.begun(place, following)
             found.append(self.event("change", row, other(following), scale or self.least_elongation, jump))
         way = each.direction(branch)
@@ -322,7 +322,7 @@ class LinearOnRigidGround(LinearSystemBase):
         model = self.model
         found = list[Event]()
         if model.is_free(key):
-            found += (self.landing(key), self.overturning(key), *self.changes(key), *self.turning(key))
+            found += (self.landing(key), self.overturning(key), *self.changes(key), *self.reversal_events(key))
         elif model.lifts:
             found += self.departures(key)
         for place in model.attached_places:
@@ -343,7 +343,7 @@ class LinearOnRigidGround(LinearSystemBase):
             following = branches_of_moving_elements(p, model.elements, (side or turn, *base[1:]), turn)
             equations, row = base_equations_of(p, model.elements, following, model.gravity), moment.copy()
             for place in self.bars:
-                row[model.layout.memory + known[place]] -= float(equations.recall[0, known[place]])
+                row[model.layout.memory + known[place]] -= float(equations.internal_factor[0, known[place]])
             condition = turn * self.taken(row, key)
             condition[-1] -= turn * float(equations.constant[0])
             if side != CLOSED:
@@ -363,8 +363,8 @@ class LinearOnRigidGround(LinearSystemBase):
         found, base = list[Event](), self.model.element_key(key)
         for place, each in enumerate(self.model.elements):
             arm = arm_of_element(self.model.properties, each, base[0])
-            reached = [is_in_reach(stop, arm) for stop in each.stops(base[1 + place])]
-            for within, (row, branch, scale) in zip(reached, self.stops(place, key, base[1 + place]), strict=True):
+            reached = [is_in_reach(stop, arm) for stop in each.limits(base[1 + place])]
+            for within, (row, branch, scale) in zip(reached, self.limit_rows(place, key, base[1 + place]), strict=True):
                 following = (*base[: place + 1], branch, *base[place + 2 :])
                 if within:
                     found.append(
@@ -372,7 +372,7 @@ class LinearOnRigidGround(LinearSystemBase):
                     )
         return found
 
-    def turning(self, key: Key) -> list[Event]:
+    def reversal_events(self, key: Key) -> list[Event]:
         """The rotation turns back while elements yield or slide, whose branches then end."""
         model, base, spin = self.model, self.model.element_key(key), self.model.layout.spin
         way = direction_of_yielding(model.properties, model.elements, base)

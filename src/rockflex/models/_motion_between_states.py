@@ -252,7 +252,7 @@ class MotionBetween:
     def fastest(self) -> float:
         """Largest eigenvalue magnitude of all phases, rad/s; integrated phases are linearised for small rotations."""
         model = self._model.linear
-        stiffest = [max(each.branches, key=lambda branch: each.pull(branch).stiffness) for each in model.elements]
+        stiffest = [max(each.branches, key=lambda branch: each.tension(branch).stiffness) for each in model.elements]
         core, keys = model.layout.core, (model.with_branches(model.start(side), stiffest) for side in model.sides)
         found = (np.linalg.eigvals(LinearMotion(model, key, 1.0).rates[:core, :core]) for key in keys)
         return max(float(np.abs(roots).max()) for roots in found)

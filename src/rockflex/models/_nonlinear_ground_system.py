@@ -176,9 +176,9 @@ class NonlinearSpringPhases(NonlinearRockingPhases):
         for k, each in enumerate(model.elements):
             place = model.springs.n + 2 + k
             memory = model.layout.memory + known[k] if k in known else -1
-            for stop in each.stops(key[place]):
+            for stop in each.limits(key[place]):
                 target, way = _with(key, place, stop.branch), 1.0 if stop.upper else -1.0
-                limit = STRETCH, k, way, stop.place, stop.recall, memory
+                limit = STRETCH, k, way, stop.place, stop.internal_factor, memory
                 scale = abs(stop.place) or self.settlement
                 found.append(self.checked("change", target, scale, *limit, jump=self.kept(key, target)))
             way = each.direction(key[place])
@@ -194,7 +194,7 @@ class NonlinearSpringPhases(NonlinearRockingPhases):
         marks = internal_variables_of_branches(model.elements, model.element_key(model_key(model, target)))
         yielding = list[tuple[int, float, Array]]()
         for place, (each, taken) in enumerate(zip(model.elements, model.element_key(own)[1:], strict=True)):
-            offset = each.turning(taken)
+            offset = each.reversal_offset(taken)
             if offset is not None:
                 yielding.append((layout.memory + known[place], offset, model.stretch(place, CLOSED)))
 

@@ -223,8 +223,8 @@ class NonlinearRockingPhases:
         rows, moment = np.zeros((2, layout.size + 2)), model.contact_moment(model_key(model, key))
         for row, equations, sign in zip(rows, equations_after, (1.0, -1.0), strict=True):
             row[[*range(layout.moving), -2, -1]] = sign * moment
-            recall = equations.recall[0]
-            row[layout.memory : layout.memory + recall.size] -= sign * recall
+            internal_factor = equations.internal_factor[0]
+            row[layout.memory : layout.memory + internal_factor.size] -= sign * internal_factor
             row[-1] -= sign * equations.constant[0]
             if side != CLOSED:
                 row[layout.rotation] += sign * equations_after[0].stiffness[0, 0]
@@ -246,11 +246,11 @@ class NonlinearRockingPhases:
         model, known = self.model, internal_places(self.model.elements)
         for place, (each, taken) in enumerate(zip(model.elements, base[1:], strict=True)):
             arm = arm_of_element(model.properties, each, base[0])
-            for stop in each.stops(taken):
+            for stop in each.limits(taken):
                 if not is_in_reach(stop, arm):
                     continue
                 kind = -1 if stop.upper == (arm > 0.0) else 1  # the limit is above |θ|, or below
-                stops.append((kind, known.get(place, -1), (stop.place / arm, stop.recall / arm)))
+                stops.append((kind, known.get(place, -1), (stop.place / arm, stop.internal_factor / arm)))
                 following = (*base[: place + 1], stop.branch, *base[place + 2 :])
                 jump = self.change(base, following, stops=False)
                 target = self.following(key, following)
@@ -267,7 +267,7 @@ class NonlinearRockingPhases:
         """The internal variables m that are set where elements cease to yield: place, r, and δ - m."""
         model, known, found = self.model, internal_places(self.model.elements), list[tuple[int, float, float]]()
         for place, (each, taken) in enumerate(zip(model.elements, base[1:], strict=True)):
-            offset = each.turning(taken)
+            offset = each.reversal_offset(taken)
             if offset is not None:
                 arm = arm_of_element(model.properties, each, base[0])
                 found.append((model.layout.memory + known[place], arm, offset))

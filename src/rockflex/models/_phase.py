@@ -19,7 +19,7 @@ class BaseEquations:
         M, C and K.
     constant, ground : ndarray, shape (b,)
         f, and the factor g of the ground acceleration.
-    recall : ndarray, shape (b, M)
+    internal_factor : ndarray, shape (b, M)
         H, the factor of the internal variables m of the elements.
     """
 
@@ -28,7 +28,7 @@ class BaseEquations:
     stiffness: Array
     constant: Array
     ground: Array
-    recall: Array
+    internal_factor: Array
 
     @classmethod
     def on_rotation(
@@ -39,15 +39,15 @@ class BaseEquations:
         stiffness: float = 0.0,
         constant: float = 0.0,
         ground: float = 0.0,
-        recall: Array | None = None,
+        internal_factor: Array | None = None,
     ) -> "BaseEquations":
         """Return the equations of an element that acts only on the rotation."""
         squares, columns = np.zeros((3, 1, 1)), np.zeros((2, 1))
         squares[:, 0, 0] = inertia, damping, stiffness
         columns[:, 0] = constant, ground
-        factors = np.zeros((1, 0 if recall is None else recall.size))
-        if recall is not None:
-            factors[0] = recall
+        factors = np.zeros((1, 0 if internal_factor is None else internal_factor.size))
+        if internal_factor is not None:
+            factors[0] = internal_factor
         return cls(squares[0], squares[1], squares[2], columns[0], columns[1], factors)
 
     @classmethod
@@ -70,7 +70,7 @@ class BaseEquations:
             self.stiffness + other.stiffness,
             self.constant + other.constant,
             self.ground + other.ground,
-            self.recall + other.recall,
+            self.internal_factor + other.internal_factor,
         )
 
 
@@ -95,7 +95,7 @@ class BorderedSystem:
         C and K.
     constant, drive : ndarray, shape (b,)
         f, and g + Σ m* c.
-    recall : ndarray, shape (b, M)
+    internal_factor : ndarray, shape (b, M)
         H, the factor of the internal variables m of the elements, which are constant during a phase.
     freed : ndarray of bool, shape (b,)
         Which are free.
@@ -108,7 +108,7 @@ class BorderedSystem:
     stiffness: Array
     constant: Array
     drive: Array
-    recall: Array
+    internal_factor: Array
     freed: Bools
 
 

@@ -212,7 +212,7 @@ class RockingModel(Value):
                 elongation = float(self.attached[place] @ moving)
             else:
                 elongation = 0.0 if side == CLOSED else float(self.elongations(each, side, np.array(abs(rotation))))
-            branch, remembered = each.brought(elongation)
+            branch, remembered = each.state_after_slow_stretch(elongation)
             branches.append(branch)
             kept += remembered
         key = (side, *branches)
@@ -235,9 +235,9 @@ class RockingModel(Value):
         for place, row in self.attached.items():
             each, r = self.elements[place], row[: p.n_modes]
             if not np.isnan(plastic[place]):
-                pull = each.pull(each.branches[0])
+                pull = each.tension(each.branches[0])
                 stiffness += pull.stiffness * np.outer(r, r)
-                forces -= r * (pull.force + pull.recall * plastic[place])
+                forces -= r * (pull.force + pull.internal_factor * plastic[place])
         return np.asarray(np.linalg.solve(stiffness, forces), dtype=float) if forces.any() else forces
 
     def from_rest(self, key: Key) -> Key:
@@ -329,11 +329,11 @@ class RockingModel(Value):
 
     def _tension(self, place: int, side: int, branch: int) -> Array:
         each, stretch, known = self.elements[place], self.stretch(place, side), internal_places(self.elements)
-        pull = each.pull(branch)
+        pull = each.tension(branch)
         row = pull.stiffness * stretch + pull.damping * rate_of_elongation_row(stretch, self.layout)
         row[-1] += pull.force
         if place in known:
-            row[self.layout.memory + known[place]] += pull.recall
+            row[self.layout.memory + known[place]] += pull.internal_factor
         row.setflags(write=False)
         return row
 
@@ -459,7 +459,7 @@ class RockingModel(Value):
             stiffness=equations.stiffness,
             constant=equations.constant,
             drive=equations.ground + leverage.sum(axis=1) if free else equations.ground,
-            recall=equations.recall if free else np.zeros((1, internal_count(self.elements))),
+            internal_factor=equations.internal_factor if free else np.zeros((1, internal_count(self.elements))),
             freed=np.array([free]),
         )
 
@@ -554,7 +554,9 @@ class RockingModel(Value):
             turn[self.layout.rotation] -= bordered_system.stiffness[0, 0]
             turn[self.layout.spin] -= bordered_system.damping[0, 0]
             turn[-1] += bordered_system.constant[0]
-            turn[self.layout.memory : self.layout.memory + bordered_system.recall.size] += bordered_system.recall[0]
+            turn[self.layout.memory : self.layout.memory + bordered_system.internal_factor.size] += (
+                bordered_system.internal_factor[0]
+            )
             turn *= bordered_system.flexibility[0, 0]
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
@@ -611,5 +613,5 @@ class RockingModel(Value):
         others = base_equations_of(p, self.elements, key, self.gravity)
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
-        moment[layout.memory : layout.memory + others.recall.size] += others.recall[0]
+        moment[layout.memory : layout.memory + others.internal_factor.size] += others.internal_factor[0]
         rows += np.outer(friction_damper_shares(p, self.elements, side), moment)

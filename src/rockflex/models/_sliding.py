@@ -84,10 +84,11 @@ class SlidingModel(RockingModel):
         equations.inertia[0, 1] = equations.inertia[1, 0] = p.l0r
         equations.ground[0] = -p.l0r
         if side != CLOSED:
-            turning = base_equations_of(p, self.elements, elements, self.gravity)
-            equations.inertia[0, 0] = turning.inertia[0, 0]
-            equations.damping[0, 0], equations.stiffness[0, 0] = turning.damping[0, 0], turning.stiffness[0, 0]
-            equations.constant[0], equations.recall[0, : turning.recall.size] = turning.constant[0], turning.recall[0]
+            rocking = base_equations_of(p, self.elements, elements, self.gravity)
+            equations.inertia[0, 0] = rocking.inertia[0, 0]
+            equations.damping[0, 0], equations.stiffness[0, 0] = rocking.damping[0, 0], rocking.stiffness[0, 0]
+            equations.constant[0] = rocking.constant[0]
+            equations.internal_factor[0, : rocking.internal_factor.size] = rocking.internal_factor[0]
         if abs(slip) == 1:
             self._add_friction(equations, key)
         return equations
@@ -97,7 +98,7 @@ class SlidingModel(RockingModel):
         p, side, layout = self.properties, key[0], self.layout
         drag, pull = key[-1] * self.friction, self.vertical_tension(key)
         equations.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
-        equations.recall[1] -= drag * pull[layout.memory : layout.memory + layout.n_internal]
+        equations.internal_factor[1] -= drag * pull[layout.memory : layout.memory + layout.n_internal]
         if side != CLOSED:
             equations.inertia[1, 0] += drag * side * p.m_tot * p.pivot(side).arm
             equations.stiffness[1, 0] += drag * pull[layout.rotation]

@@ -247,7 +247,7 @@ class SpringModel(RockingModel):
         equations.stiffness[freedom] -= motion[::2]
         equations.damping[freedom] -= motion[1::2]
         equations.constant[freedom] += force[-1]
-        equations.recall[freedom] += force[layout.memory : layout.memory + layout.n_internal]
+        equations.internal_factor[freedom] += force[layout.memory : layout.memory + layout.n_internal]
 
     def grip(self, key: Key) -> Array:
         """Return Σ μ_j N_j as a row, shape (C,)."""
@@ -283,7 +283,7 @@ class SpringModel(RockingModel):
         moving = np.append(start[: layout.moving], (0.0, 1.0))
         moving[layout.rotation] = turned
         for place, each in enumerate(self.elements):
-            branch, remembered = each.brought(float(self.stretch(place, CLOSED) @ moving))
+            branch, remembered = each.state_after_slow_stretch(float(self.stretch(place, CLOSED) @ moving))
             of_elements.append(branch)
             kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
@@ -317,8 +317,8 @@ class SpringModel(RockingModel):
         acts = [{LOADED: 1.0, RECEDING: -1.0}.get(branch, 0.0) for branch in key[1 : n + 1]]
         known, recalled, rows = internal_places(self.elements), list[int](), np.zeros((len(self.elements), 6))
         for place, (each, taken) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
-            pull, stretch = each.pull(taken), self.stretch(place, CLOSED)
-            rows[place] = each.position, pull.stiffness, pull.damping, pull.force, pull.recall, stretch[-1]
+            pull, stretch = each.tension(taken), self.stretch(place, CLOSED)
+            rows[place] = each.position, pull.stiffness, pull.damping, pull.force, pull.internal_factor, stretch[-1]
             recalled.append(self.layout.memory + known[place] if place in known else -1)
         return GroundPhase(
             side=CLOSED,

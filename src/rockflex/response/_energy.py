@@ -231,7 +231,7 @@ def swept_integrals(model: RockingModel, states: Array, work: EnergyBetweenState
 def swept_elements(model: RockingModel) -> list[int]:
     """Return the places of viscous elements whose elongation does not follow from the rotation."""
     places = range(len(model.elements)) if model.springs is not None else model.attached_places
-    return [place for place in places if model.elements[place].pull(0).damping > 0.0]
+    return [place for place in places if model.elements[place].tension(0).damping > 0.0]
 
 
 class Table(NamedTuple):

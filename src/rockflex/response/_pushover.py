@@ -257,10 +257,10 @@ class _PushoverEquilibria:
         free = len(self.top) - closed
         stiffness, load = self.stiffness.copy(), np.zeros(len(self.top)) if rate else self.weight.copy()
         for each, row, place in zip(self.elements, self.rows, places, strict=True):
-            pull = each.pull(place.branch)
+            pull = each.tension(place.branch)
             stiffness += pull.stiffness * np.outer(row, row)
             if not rate:
-                load -= row * (pull.force + pull.recall * place.memory)
+                load -= row * (pull.force + pull.internal_factor * place.memory)
         whole = np.zeros((free + 1, free + 1))
         whole[:free, :free] = stiffness[:free, :free]
         whole[:free, free], whole[free, :free] = -self.push[:free], self.top[:free]

@@ -105,13 +105,13 @@ def element_at_start_of_path(element: Element) -> StaticElementState:
 
 def static_tension(element: Element, place: StaticElementState) -> float:
     """Return the force in N while the elongation changes slowly."""
-    pull = element.pull(place.branch)
-    return pull.stiffness * place.elongation + pull.force + pull.recall * place.memory
+    pull = element.tension(place.branch)
+    return pull.stiffness * place.elongation + pull.force + pull.internal_factor * place.memory
 
 
 def static_internal_variable(element: Element, place: StaticElementState) -> float:
     """Return the internal variable if the branch ended here: on a branch that yields it follows the elongation."""
-    offset = element.turning(place.branch)
+    offset = element.reversal_offset(place.branch)
     return place.memory if offset is None else place.elongation - offset
 
 
@@ -126,8 +126,8 @@ def start_moving(element: Element, place: StaticElementState, direction: int) ->
 def next_branch_change(element: Element, place: StaticElementState, direction: int) -> tuple[float, int] | None:
     """Return the elongation at which the branch ends if it keeps its direction, and the next branch; None if never."""
     ahead = [
-        (max(direction * (stop.place + stop.recall * place.memory), direction * place.elongation), stop.branch)
-        for stop in element.stops(place.branch)
+        (max(direction * (stop.place + stop.internal_factor * place.memory), direction * place.elongation), stop.branch)
+        for stop in element.limits(place.branch)
         if stop.upper == (direction > 0)
     ]
     if direction == 0 or not ahead:
@@ -166,7 +166,7 @@ def _static_path_about_pivots(
     arms = {side: tuple(arm_of_element(properties, each, side) for each in elements) for side in (RIGHT, LEFT)}
     yield CLOSED, 0.0, bool(rotations[0] == 0.0), places
     before = CLOSED
-    for side, start, end, given in _legs(rotations):
+    for side, start, end, given in _monotonic_segments(rotations):
         leg = _leg(elements, arms[side], places, start, end, lifts=side != before) if side != CLOSED else []
         for reached, places in leg[:-1]:
             yield side, reached, False, places
@@ -175,7 +175,7 @@ def _static_path_about_pivots(
         before = side
 
 
-def _legs(rotations: Array) -> Iterator[tuple[int, float, float, bool]]:
+def _monotonic_segments(rotations: Array) -> Iterator[tuple[int, float, float, bool]]:
     """Yield side, first and last |θ| of every part of the path on one side, and whether its end was prescribed."""
     side, known = CLOSED, 0.0
     for rotation in rotations[int(rotations[0] == 0.0) :].tolist():
@@ -327,7 +327,7 @@ def _next_equilibrium(
         {way: _onward(each, place, way) for way in (1, -1)} for each, place in zip(elements, state.places, strict=True)
     ]
     up, down = (
-        np.array([each.pull(ways[way].branch).stiffness for each, ways in zip(elements, onward, strict=True)])
+        np.array([each.tension(ways[way].branch).stiffness for each, ways in zip(elements, onward, strict=True)])
         for way in (1, -1)
     )
     taken = np.where(state.pressed & ~state.empty, springs.stiffness, 0.0)

@@ -16,10 +16,10 @@ from rockflex.foundation.registry import registered_objects
 from rockflex.foundation.shown import shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import (
-    ForgottenLaw,
     ImpactLaw,
     Restitution,
     SidedRestitution,
+    UnsavedLaw,
     VVELComplete,
     VVELSimplified,
 )
@@ -62,7 +62,7 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
     "VVELComplete": VVELComplete,
     "Restitution": Restitution,
     "SidedRestitution": SidedRestitution,
-    "ForgottenLaw": ForgottenLaw,
+    "UnsavedLaw": UnsavedLaw,
 }
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
@@ -182,7 +182,7 @@ def _impact_law_to_file(law: ImpactLaw) -> dict[str, Any]:
     name = type(law).__name__
     if name in LAWS and type(law) is LAWS[name]:
         return {"law": name, **asdict(cast("Any", law))}
-    return {"law": "ForgottenLaw", "description": shown(law), "keeps": str(law.keeps), "loses": str(law.loses)}
+    return {"law": "UnsavedLaw", "description": shown(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
 
 def _impact_law_from_file(parameters: dict[str, Any]) -> ImpactLaw:

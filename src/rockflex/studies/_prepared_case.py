@@ -104,7 +104,7 @@ class PreparedCase:
         return None if self.initial is None else self.initial.state(self.model)
 
     @property
-    def together(self) -> tuple[object, ...]:
+    def batch_key(self) -> tuple[object, ...]:
         """Equal for cases whose runs can be solved together: of one stack, with the same options."""
         return self.engine.group, self.free_vibration, self.work_limit
 
@@ -181,11 +181,11 @@ class RunOptions:
             free_vibration=free, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=limit
         )
 
-    def among(self, models: Iterable[Model]) -> Self:
+    def for_models(self, models: Iterable[Model]) -> Self:
         """Return the options for a set of models: if no label ends in -BW, all of them have the hysteresis."""
         return replace(self, all_yield=not yielding_model_labels(models))
 
-    def tied(self, model: Model, properties: RockingProperties) -> RockingModel:
+    def model_of(self, model: Model, properties: RockingProperties) -> RockingModel:
         """Return a model of a structure."""
         bouc_wen = self.bouc_wen if self.all_yield or model.yields else None
         return model.of(properties, self.impact, bouc_wen, ground_under_structure(properties, self.ground))
@@ -194,7 +194,7 @@ class RunOptions:
         self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False
     ) -> PreparedCase:
         """Return the runs of a model of a structure."""
-        tied = self.tied(model, properties)
+        tied = self.model_of(model, properties)
         return PreparedCase(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
 
 
@@ -258,7 +258,7 @@ class RunPeaks:
 
 
 def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
-    """Run motions, each at a scale on a case, where all cases are `together` and the motions have one time step.
+    """Run motions, each at a scale on a case, where all cases are `batch_key` and the motions have one time step.
 
     The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
     solved are among the failures.
@@ -328,7 +328,7 @@ def _solutions_by_group(
         if isinstance(case, InputError):
             failures[place] = case
         else:
-            kind = place if case.history else (*case.together, motion.dt, has_vertical_motion(motion))
+            kind = place if case.history else (*case.batch_key, motion.dt, has_vertical_motion(motion))
             alike.setdefault(kind, []).append(place)
     for places in alike.values():
         try:

@@ -167,7 +167,7 @@ class RunMatrix:
         floors: bool = False,
     ) -> None:
         self.structures, self.motions, self.models = list(structures), motions, models
-        self.options, self.history, self.floors = options.among(models), history, floors
+        self.options, self.history, self.floors = options.for_models(models), history, floors
         self._cases: dict[tuple[int, int], PreparedCase | InputError] = {}
 
     def __getstate__(self) -> dict[str, Any]:

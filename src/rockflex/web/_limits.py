@@ -191,7 +191,7 @@ def check_size_of_set(case: PreparedCase, motions: Sequence[GroundMotion], path:
 def _check_model_of_structure(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     with errors_as_refusals(path):
-        plan.matrix.options.tied(parse_model(label), properties)
+        plan.matrix.options.model_of(parse_model(label), properties)
 
 
 def check_size_of_study(plan: "CloudPlan", path: str) -> None:
