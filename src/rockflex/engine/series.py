@@ -53,7 +53,7 @@ class Series:
         """
         self.place, self.a = place, start + (end - start) * u
         if self.phases.nonlinear(place):
-            self.part = self.flow.take(place, start, end, v, u)
+            self.part = self.flow.take_step(place, start, end, v, u)
             if self.part > 0.0:
                 self.terms = self.flow.fill(self.series, self.away)
             return self.part

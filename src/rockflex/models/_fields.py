@@ -193,7 +193,7 @@ class RockingField(Field):
         drive: cython.double = -a
         turn: cython.double = 0.0
         if self.pulled:
-            moment += self.side * self.tension(y, P_MOMENT)
+            moment += self.side * self.pull(y, P_MOMENT)
         if self.viscous:
             moment += self.pulls[P_DAMPING, 0] * spin
         if self.hysteretic:
@@ -250,7 +250,7 @@ class RockingField(Field):
         # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
         if self.viscous or self.pulled:
             lever = sqrt(0.5 + 0.5 * cosine)
-            moment += self.side * self.tension(y, P_MOMENT) * lever + self.pulls[P_DAMPING, 0] * lever * lever * spin
+            moment += self.side * self.pull(y, P_MOMENT) * lever + self.pulls[P_DAMPING, 0] * lever * lever * spin
         moment += (a * beside - gravity * drive + self.pulls[P_STIFFNESS, 0]) * sine
         moment += (a * drive + gravity * beside) * cosine
         turn = moment * share
@@ -358,7 +358,7 @@ class RockingField(Field):
             total += self.lever[i] * rates[n + i]
         total += self.weight_arm * (a * cosine - gravity * sine) + beside * (a * sine + gravity * cosine)
         total += self.pulls[P_STIFFNESS, 0] * sine
-        return -total - self.side * self.tension(y, P_MOMENT) * sqrt(0.5 + 0.5 * cosine)
+        return -total - self.side * self.pull(y, P_MOMENT) * sqrt(0.5 + 0.5 * cosine)
 
     def imbalance_along(self, states, rates, a, a_v):
         """Return `imbalance` at many states, shape (k,)."""
@@ -386,7 +386,7 @@ class RockingField(Field):
         m: cython.int
         k: cython.int
         upright: cython.double = cos(0.5 * y[2 * self.n])
-        own: cython.double = self.tension(y, P_MOMENT)
+        own: cython.double = self.pull(y, P_MOMENT)
         after: cython.double
         moment: cython.double = self.imbalance(y, rates, a, a_v)
         for k in range(2):
@@ -432,7 +432,7 @@ class RockingField(Field):
         # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
         if self.held or self.pulled or self.pulls[P_PULL, 0] != 0.0 or self.pulls[P_DRAG, 0] != 0.0:
             half = 0.5 * sine / upright
-            coriolis = self.tension(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
+            coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
             coriolis += self.pulls[P_DRAG, 0] * upright * self.side * spin
             if self.held:
                 coriolis += self.grip / upright * self.imbalance(y, rates, a, a_v)

@@ -38,7 +38,7 @@ def _marks(model: RockingModel) -> list[tuple[str, int, Collection[float]]]:
     memory, found = HEADER + model.layout.memory, list[tuple[str, int, Collection[float]]]()
     for place, first in internal_places(model.elements).items():
         each = model.elements[place]
-        values = [mark for mark in map(each.mark, each.branches) if mark is not None]
+        values = [mark for mark in map(each.branch_code, each.branches) if mark is not None]
         if len(values) == len(each.branches):  # of a bar only the last branch has one
             found.append((f"branch of element {place}", memory + first + each.n_internal - 1, values))
     if isinstance(model, SlidingModel):
