@@ -2,6 +2,7 @@
 
 import math
 import operator
+import sys
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from numbers import Real
@@ -19,7 +20,6 @@ T = TypeVar("T")
 MOST_STORIES, MOST_MODES = 1000, 200
 """Limits of stories of a frame and modes of a continuous structure: these take seconds and about 100 MB."""
 
-_HOLDERS = list, tuple, np.ma.MaskedArray
 _NO_NUMBERS = bool, np.bool_, str, bytes, bytearray, complex, np.complexfloating
 _IN_WORDS = {"c": "complex numbers", "S": "texts", "U": "texts", "b": "booleans"}
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
@@ -216,13 +216,21 @@ def float_array(values: ArrayLike, *, booleans: bool = False) -> Array | None:
         return None
 
 
+def is_masked_array(given: object) -> bool:
+    """Return whether an object is a masked array of NumPy, without loading numpy.ma, which takes some 20 ms."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(given, masked.MaskedArray)
+
+
 def masked_count(values: object, depth: int = 2) -> int:
     """Return how many values of a masked array, or of those in rows, are masked, which NumPy forgets in silence."""
-    if isinstance(values, np.ma.MaskedArray):
-        return int(np.ma.count_masked(values))
+    if is_masked_array(values):
+        return int(np.ma.count_masked(cast("np.ma.MaskedArray[Any, Any]", values)))
     if depth == 0 or not isinstance(values, list | tuple):
         return 0
-    held = (each for each in cast("Sequence[object]", values) if isinstance(each, _HOLDERS))
+    held = (
+        each for each in cast("Sequence[object]", values) if isinstance(each, list | tuple) or is_masked_array(each)
+    )
     return sum(masked_count(each, depth - 1) for each in held)
 
 
@@ -279,7 +287,7 @@ def _float_or_none(value: Any) -> float | None:
     """
     if isinstance(value, np.ndarray):
         array = cast("NDArray[Any]", value)
-        value = None if array.ndim or isinstance(array, np.ma.MaskedArray) else array[()]
+        value = None if array.ndim or is_masked_array(array) else array[()]
     if isinstance(value, _NO_NUMBERS):
         return None
     try:
