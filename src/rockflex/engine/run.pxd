@@ -71,7 +71,7 @@ cdef class Run:
     cdef double rise_at(self, const double[::1] v, int i) noexcept nogil
     cdef int check_stop_request(self) except -1 nogil
     cdef int settle_over(self, long long most, bint history) except -1 nogil
-    cdef int advance_sample_with_events(self, int i, double start, double end, (double, double) v, bint history) except -1 nogil
+    cdef int advance_sample(self, int i, double start, double end, (double, double) v, bint history) except -1 nogil
     cdef int leave(self, int event, double sample, double a, double v) except -1 nogil
     cdef int resolve_next_phase(self, int event, int outcome) except -1
     cdef refuse(self, int event, double sample)

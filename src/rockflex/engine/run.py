@@ -228,9 +228,8 @@ class Run:
         if not self.phases.has_tables(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            self.phase_bytes += self.phases.set_vertical_tables(
-                place, self.which, shaken_of(self.met[place][1], self.h)
-            )
+            tables = shaken_of(self.met[place][1], self.h)
+            self.phase_bytes += self.phases.set_vertical_tables(place, self.which, tables)
         return 0
 
     def prepare(self, key, place):
@@ -395,9 +394,7 @@ class Run:
                     self.journal.keep(self.passed + j, a[j], self.rise_at(v, j), states[j], self.now)
             self.reached = i
             if self.peaks_.looks():
-                self.advance_sample_with_events(
-                    i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history
-                )
+                self.advance_sample(i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history)
                 i += 1
             elif i < last and self.peaks_.count() + BLOCK > CANDIDATES and not self.phases.nonlinear(self.now):
                 self.search(a, v, False)  # otherwise it has paused to look up, which must not change what is counted
@@ -453,7 +450,7 @@ class Run:
             self.proceed(self.quiet, self.still, history)
         return 0
 
-    def advance_sample_with_events(self, i, start, end, v, history):
+    def advance_sample(self, i, start, end, v, history):
         """Advance over a sample in which something may happen."""
         u: cython.double = self.flow.reached if self.phases.nonlinear(self.now) else 0.0  # the part that has passed
         a: cython.double
