@@ -7,8 +7,8 @@ import numpy as np
 
 import rockflex as rf
 from rockflex.models._elements import element_force_sums
+from rockflex.models._field_numbers import field_numbers
 from rockflex.models._fields import RockingField
-from rockflex.models._vector_fields import field_numbers
 
 # Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
 STRUCTURE_1: dict[str, Any] = {

@@ -19,9 +19,9 @@ from rockflex.models import _nonlinear_ground_system as ground_systems
 from rockflex.models import _nonlinear_system as systems
 from rockflex.models import parse_model
 from rockflex.models._elements import element_force_sums
+from rockflex.models._field_numbers import field_numbers
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._quantities import Quantities
-from rockflex.models._vector_fields import field_numbers
 
 
 @pytest.mark.slow

@@ -91,7 +91,7 @@ class RockingField(Field):
     side, branch
         Pivot about which the base rotates, 1 right, -1 left, 0 in contact; sign of D'_1 in the law of Bouc and Wen.
     numbers
-        Of the model: see `rockflex.models._vector_fields.Numbers`.
+        Of the model: see `FieldNumbers`.
     pulls : ndarray, shape (7, 1 + M)
         Sums over the elements, see `element_force_sums`.
     stops : list

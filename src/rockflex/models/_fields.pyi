@@ -2,7 +2,7 @@ from collections.abc import Callable, Sequence
 
 from rockflex.engine.field import Field, Jump
 from rockflex.foundation.arrays import Array
-from rockflex.models._vector_fields import FieldNumbers
+from rockflex.models._field_numbers import FieldNumbers
 
 class RockingField(Field):
     def __init__(

@@ -72,7 +72,7 @@ class GroundField(Field):
     Parameters
     ----------
     numbers
-        Of the model: see `rockflex.models._vector_fields.Numbers`.
+        Of the model: see `FieldNumbers`.
     phase
         What moves and what acts: see `rockflex.models._nonlinear_ground.GroundPhase`.
     stops

@@ -3,8 +3,8 @@ from typing import Any
 
 from rockflex.engine.field import Field
 from rockflex.foundation.arrays import Array
+from rockflex.models._field_numbers import FieldNumbers
 from rockflex.models._phase import GroundPhase
-from rockflex.models._vector_fields import FieldNumbers
 
 GRIP: int
 PRESSURE: int

@@ -25,6 +25,7 @@ from rockflex.models._elements import (
     internal_variables_of_branches,
     is_in_reach,
 )
+from rockflex.models._field_numbers import field_numbers
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
@@ -32,7 +33,7 @@ from rockflex.models._landing import impact_law_of_side, landing_gains_energy_er
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._vector_fields import field_numbers, field_of
+from rockflex.models._vector_fields import field_of
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support

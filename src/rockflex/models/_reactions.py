@@ -11,12 +11,12 @@ from rockflex.foundation.arrays import Array
 from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._elements import CLOSED
+from rockflex.models._field_numbers import field_numbers
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._spring_model import LOADED
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._values_at_states import acting_side, observed, rates_at_states
-from rockflex.models._vector_fields import field_numbers
 
 
 class Reactions(NamedTuple):

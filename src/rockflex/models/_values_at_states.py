@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex.foundation.arrays import Array
+from rockflex.models._field_numbers import FieldNumbers, field_numbers
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._vector_fields import FieldNumbers, field_numbers, field_of
+from rockflex.models._vector_fields import field_of
 
 Places = NDArray[np.intp]
 _MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow

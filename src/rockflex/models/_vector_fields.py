@@ -1,13 +1,10 @@
 """The vector fields of phases of nonlinear models, complete (Eqs. 13-16, 26-29) and yielding (Eqs. 37-38)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rockflex.foundation.arrays import Array
-from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import (
     LEFT,
     MOMENT,
@@ -17,42 +14,11 @@ from rockflex.models._elements import (
     friction_damper_shares,
     is_held_by_dampers,
 )
+from rockflex.models._field_numbers import FieldNumbers
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._state_layout import StateLayout
-from rockflex.structure._rocking import RockingProperties
-
-
-@dataclass(frozen=True, eq=False)
-class FieldNumbers:
-    """What a vector field knows of a model."""
-
-    properties: RockingProperties
-    bouc_wen: BoucWen | None
-    complete: bool
-    viscous: bool
-    gravity: float
-    resting: float  # vertical reaction at rest
-    layout: StateLayout
-    kinds: Sequence[int]  # of the outputs
-    levers: Array
-
-
-def field_numbers(model: RockingModel, kinds: Sequence[int] = (), levers: Array | None = None) -> FieldNumbers:
-    """Return what the vector field of a model knows, with outputs of these kinds, each with two levers."""
-    return FieldNumbers(
-        properties=model.properties,
-        bouc_wen=model.bouc_wen,
-        complete=model.complete,
-        viscous=model.layout.swept >= 0,
-        gravity=model.gravity,
-        resting=model.properties.resting_reaction,
-        layout=model.layout,
-        kinds=kinds,
-        levers=np.zeros((len(kinds), 2)) if levers is None else levers,
-    )
 
 
 def field_of(
