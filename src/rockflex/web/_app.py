@@ -26,6 +26,7 @@ from rockflex.foundation.json import as_json_value
 from rockflex.foundation.language import CATALOGUES, Language, use_language
 from rockflex.foundation.units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
+from rockflex.response._outputs import HISTORY, OUTPUTS
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
@@ -428,6 +429,10 @@ def _answer_about_page() -> dict[str, Any]:
         "units": {
             name: {quantity: UnitSystem(name).of(quantity)._asdict() for quantity in QUANTITIES}
             for name in get_args(SystemName)
+        },
+        "outputs": {
+            name: {"symbol": each.symbol, "quantity": each.quantity, "words": each.words}
+            for name, each in (*HISTORY.items(), *OUTPUTS.items())
         },
         "pdf": found_browser() is not None,
         "state": as_json_value(first.model_dump(exclude_none=True)),

@@ -26,8 +26,8 @@ from rockflex.report.run._sheet import (
     line_count_of_text,
 )
 from rockflex.response._comparison import STATISTICS, Comparison
-from rockflex.response._demands import DEMANDS
 from rockflex.response._history import History
+from rockflex.response._outputs import OUTPUTS
 from rockflex.structure._rocking import RockingProperties
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
@@ -163,9 +163,9 @@ def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     differences = [comparison.differences(each).to_dict("index") for each in shown]
     rows: list[Sequence[ReportCell]] = []
     for demand in map(str, values[0]):
-        known = DEMANDS[demand]
-        unit = units.of(known.quantity, largest=float(comparison.runs[demand].max()))
-        cells = [ReportCell(unit.heading(translated(known.compared_as or known.symbol)))]
+        known = OUTPUTS[demand]
+        unit = known.unit_in(units, largest=float(comparison.runs[demand].max()))
+        cells = [ReportCell(unit.heading(translated(known.symbol)))]
         cells += [
             _joined([value_cell(each[demand][name], demand, unit.size) for each in values]) for name in comparison.names
         ]
