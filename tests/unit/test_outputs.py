@@ -94,7 +94,7 @@ def test_a_report_shows_the_same(run, tmp_path):
 @pytest.mark.parametrize("name", [*OUTPUTS, *HISTORY])
 def test_the_page_is_told_the_same(name):
     about, known = _answer_about_page(), (HISTORY | OUTPUTS)[name]
-    told = about["outputs"][name]
+    told = (about["histories"] | about["outputs"])[name]
     assert (told["symbol"], told["words"]) == (known.symbol, known.words)
     if known.quantity in about["units"]["kN"] and known.quantity != "acceleration":  # the page has those in m/s²
         assert about["units"]["kN"][told["quantity"]]["name"] == known.unit_in(KN).name

@@ -20,7 +20,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._outputs import outputs_as_docstring
+from rockflex.response._outputs import OUTPUTS, outputs_as_docstring
 from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
 
@@ -34,8 +34,8 @@ SI = UnitSystem("SI")
 def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem = SI) -> tuple[str, ...]:
     """Return one text per warning; `peaks` are those of a `Response` by name."""
 
-    def text(name: str, quantity: str) -> str:
-        size, unit = units.of(quantity)
+    def text(name: str) -> str:
+        size, unit = OUTPUTS[name].unit_in(units)
         return f"{peaks[name] / size:.4g} {unit}"
 
     found: list[str] = []
@@ -45,7 +45,7 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "The vertical reaction falls to {force} at {time:.4g} s: {model} pulls the base down there, "
                 "which no ground can. The pivot would lift, and what follows is to be read with care. Give simulate a "
                 "Ground with springs, on which the base can leave the ground.",
-                force=text("min_vertical_reaction", "force"),
+                force=text("min_vertical_reaction"),
                 time=peaks["time_of_min_vertical_reaction"],
                 model=model,
             )
@@ -64,7 +64,7 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "θ reaches {rotation}, {ratio:.3g} times the rotation α at which the static moment vanishes. "
                 "{model} is for small rotations: whether the structure overturns is to be decided by a complete model "
                 "on rigid ground, such as {complete}.",
-                rotation=text("max_rotation", "rotation"),
+                rotation=text("max_rotation"),
                 ratio=peaks["balance_ratio"],
                 model=model,
                 complete=complete_model_label(model),

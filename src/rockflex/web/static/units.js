@@ -5,10 +5,10 @@ import { t } from "./texts.js";
 
 let table = {}; // units of each system by the kind of quantity
 let system = "";
-let outputs = {}; // symbol, quantity and words of each output of a run
+let [peaks, outputs] = [{}, {}]; // symbol, quantity and words of each peak of a run, and of each quantity over time too
 
 export function setUnits(about, name) {
-  [table, outputs, system] = [about.units, about.outputs, name];
+  [table, peaks, outputs, system] = [about.units, about.outputs, { ...about.histories, ...about.outputs }, name];
 }
 
 // The unit of a kind of quantity; the system "kN" has that of `usual`: accelerations are in m/s² there.
@@ -35,6 +35,7 @@ export const headed = (name) => titled(`${t(outputs[name].symbol)} [{unit}]`, ou
 export const outputUnit = (name) => unit(outputs[name].quantity);
 export const outputIn = (name, value, digits) => valueIn(value, outputs[name].quantity, digits);
 export const outputInUnit = (name, value, digits) => inUnit(value, outputs[name].quantity, digits);
+export const outputsOf = (runs) => Object.keys(peaks).filter((name) => peaks[name].of === runs);
 export const explainedOutputs = (names) => names.map((name) => `${t(outputs[name].symbol)}: ${t(outputs[name].words)}`).join("; ");
 
 export const inUnit = (value, quantity, digits) => `${valueIn(value, quantity, digits)} ${unit(quantity).name}`;

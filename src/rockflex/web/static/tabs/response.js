@@ -13,7 +13,7 @@ import { project } from "../project.js";
 import { recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { language, t } from "../texts.js";
-import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, titled, valueIn } from "../units.js";
+import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, outputsOf, titled, valueIn } from "../units.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
@@ -241,7 +241,7 @@ function uplifts(model) {
 const PEAKS = ["max_rotation", "max_top_displacement", "max_total_top_displacement", "max_base_moment", "max_base_shear",
   "max_horizontal_reaction", "min_vertical_reaction"];
 const COMPARED = ["max_total_top_displacement", "max_base_moment", "max_base_shear", "max_horizontal_reaction"];
-const [RESIDUAL, SLIPS, EDGE_PEAKS] = ["residual_rotation", ["max_slip", "residual_slip"], ["max_edge_uplift", "max_edge_settlement"]];
+const RESIDUAL = "residual_rotation";
 const STATUS = { no_uplift: t("no uplift"), rocking: t("rocking") };
 
 const FLOORS = [
@@ -275,7 +275,8 @@ function table(view) {
   const lifting = view.models.filter((m) => m.lifts);
   const standing = lifting.filter((m) => m.status !== "overturned");
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
-  const last = [...(held ? [RESIDUAL] : []), ...(view.ground?.slides ? SLIPS : []), ...(view.ground?.springs.length ? EDGE_PEAKS : [])];
+  const last = [...(held ? [RESIDUAL] : []), ...(view.ground?.slides ? outputsOf("sliding") : []),
+    ...(view.ground?.springs.length ? outputsOf("springs") : [])];
   const meant = [`${explainedOutputs([...PEAKS, ...last])}.`,
     ...(fixed.length ? [t("In brackets: relative to {reference}.", { reference: listed(fixed) })] : [])];
   const head = [t("Model"), t("Outcome"), ...PEAKS.map(headed), t("Impacts"), "θ_max/θ_nom", ...last.map(headed)];
