@@ -354,7 +354,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(rockflex.foundation.files, "write_file_atomically", full)
+    monkeypatch.setattr(rockflex.foundation.files, "writing_atomically", full)
     with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
         rf.write_report(one, path)
     assert path.read_bytes() == before

@@ -32,7 +32,6 @@ from rockflex.models._state_checks import check_states
 from rockflex.models._state_layout import HEADER, RISE
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
-from rockflex.response._outputs import outputs_of
 from rockflex.response._peaks import (
     ELEMENT_PEAKS,
     NONE,
@@ -213,7 +212,7 @@ def _of_ground(scalars: dict[str, Any], history: History | None) -> dict[str, fl
     uplift = 0.0
     if scalars["max_rotation"] > 0.0:
         uplift = math.nan if history is None else float(history.edge_uplift.max())
-    return dict.fromkeys(outputs_of("sliding", "springs"), 0.0) | {"max_edge_uplift": uplift}
+    return {"max_slip": 0.0, "residual_slip": 0.0, "max_edge_uplift": uplift, "max_edge_settlement": 0.0}
 
 
 def _balance_ratio(scalars: dict[str, Any], history: History) -> float:
