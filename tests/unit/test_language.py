@@ -80,6 +80,7 @@ def labels():
     yield from (OUTPUTS[name].symbol for name in (*DEMANDS_OF_SET, *COMPARED_DEMANDS))
     yield from (each.name for each in KINDS)
     yield from (HISTORY[name].symbol for name in PANELS)
+    yield from (each.words for each in OUTPUTS.values() if each.of == "tendons")
     yield from (
         *FEW_RUNS,
         *(f"{part}: {{note}}" for part in PARTS),

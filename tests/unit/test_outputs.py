@@ -16,6 +16,7 @@ from report_page import read
 from rockflex.cli import _console
 from rockflex.cli._app import app
 from rockflex.foundation.units import KN
+from rockflex.plot._history import PANELS
 from rockflex.response._outputs import (
     ALL_RESULTS,
     COLUMNS,
@@ -89,6 +90,15 @@ def test_a_report_shows_the_same(run, tmp_path):
         assert text.replace("\xa0", " ") == heading(name, value).replace("_", "").replace(" [", "[")
         if name in PEAKS:
             assert value == getattr(run, name)
+
+
+@pytest.mark.slow
+def test_axes_have_the_symbols(run):
+    figure = rf.plot_history(run, panels=[*PANELS])
+    for name, axes in zip(PANELS, figure.axes, strict=True):
+        label, _, unit = axes.get_ylabel().partition(" [")
+        assert re.sub(r"[${}]|\\mathrm", "", label) == HISTORY[name].symbol
+        assert unit.rstrip("]").removeprefix("k").removeprefix("M") == HISTORY[name].si
 
 
 @pytest.mark.parametrize("name", [*OUTPUTS, *HISTORY])

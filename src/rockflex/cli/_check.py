@@ -167,7 +167,7 @@ def read_limits(file: Path | None) -> "CheckLimits":
 
 
 def _print_set(found: "RecordSet", units: UnitSystem) -> None:
-    from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS
+    from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS, legend
 
     peaks, statistics = found.peaks, found.statistics
     shown = {name: OUTPUTS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
@@ -189,6 +189,8 @@ def _print_set(found: "RecordSet", units: UnitSystem) -> None:
         for size, unit in (OUTPUTS[name].unit_in(units),)
     ]
     console.print_rows(("demand", "unit", *STATISTICS.values()), rows, 2)
+    for line in legend(map(str, statistics.index), of_few=True):
+        console.print_line(line)
     for reason in dict.fromkeys(statistics["reason"]):
         console.print_line(f"design: {reason}")
 

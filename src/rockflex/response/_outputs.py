@@ -244,9 +244,17 @@ def outputs_of(*runs: Runs) -> tuple[str, ...]:
     return tuple(name for name, each in OUTPUTS.items() if each.of in runs)
 
 
-def legend(names: Iterable[str]) -> list[str]:
-    """Return what is below a table that shows these outputs: the symbol of each, and what it is."""
-    return [f"{translated(OUTPUTS[name].symbol)}: {translated(OUTPUTS[name].words)}" for name in names]
+def legend(names: Iterable[str], *, of_few: bool = False) -> list[str]:
+    """Return what is below a table that shows these outputs: the symbol of each, and what it is.
+
+    Where only those are to be explained that not all runs have, it is `of_few`.
+    """
+    shown = [OUTPUTS[name] for name in names]
+    return [
+        f"{translated(each.symbol)}: {translated(each.words)}"
+        for each in shown
+        if not of_few or each.of not in ("all", "floors")
+    ]
 
 
 def described_output(name: str) -> Output | None:

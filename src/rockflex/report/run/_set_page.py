@@ -20,7 +20,7 @@ from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
 from rockflex.response._limit_checks import CheckLimits, check
-from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS
+from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS, legend
 from rockflex.response._record_set import RecordSet
 from rockflex.structure._structure import structure_warnings
 
@@ -86,7 +86,8 @@ def set_page(
         fell=translated("† The values of a record that overturns include its fall.") if found.n_overturned else "",
         statistics=_statistics_table(found, units),
         reasons=[
-            translated("For design: {reason}.", reason=each) for each in dict.fromkeys(found.statistics["reason"])
+            *legend(map(str, found.statistics.index), of_few=True),
+            *(translated("For design: {reason}.", reason=each) for each in dict.fromkeys(found.statistics["reason"])),
         ],
         limits=limit_check_table(
             [translated("demand" if found.rule is None else "demand for design")], [checks], units
