@@ -119,9 +119,10 @@ wheels:  ## a wheel in dist for each Python found, tested in an empty environmen
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n auto --dist loadgroup -q -m "not slow and not web"
 
-lint: $(READY)  ## ruff: style, docstrings, error messages
+lint: $(READY)  ## ruff: style, docstrings, error messages; and at how many places one thing is said
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/python scripts/count_places.py
 
 types: $(READY)  ## pyright (strict) on src
 	$(BIN)/basedpyright --pythonpath $(BIN)/python src

@@ -31,7 +31,7 @@ CHECKS = {
     "slow-validation": Check(f"{PYTEST} -m slow tests/validation tests/engine tests/property", 250.0),
     "slow-web": Check(f"{PYTEST} -m slow tests/web", 450.0),
     "slow-unit": Check(f"{PYTEST} -m slow tests/unit tests/architecture", 650.0),
-    "lint": Check("make -s lint", 1.0),
+    "lint": Check("make -s lint", 3.0),
     "types": Check("make -s types", 50.0),
     "docs": Check("make -s docs", 400.0),
     "portable": Check("python scripts/portable_tests.py -n {workers} --dist loadgroup -q", 215.0),

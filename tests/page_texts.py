@@ -9,8 +9,8 @@ from typing import Any
 from babel.messages.extract import extract_javascript
 
 from rockflex.motion import MEASURES
-from rockflex.response._demands import DEMANDS
 from rockflex.response._limit_checks import KINDS, SOURCES
+from rockflex.response._outputs import DEMANDS_OF_SET, OF_MOTION, OUTPUTS, REACTIONS, outputs_of
 from rockflex.web import _earthquake, _projects, _structure
 from rockflex.web._app import STATIC, _answer_about_page
 
@@ -33,7 +33,12 @@ def texts_of_answers() -> set[str]:
     found = {*_of_forms(_answer_about_page()), *_of_facts(), "no tendon", "its own tendons", _structure.RECENTRING_HELP}
     found |= {"results", _projects.SETTLES}  # what the page leaves of a project
     found |= {text for measure in MEASURES.values() for text in (measure.head, measure.words, measure.title)}
-    found |= {*SOURCES, *(each.name for each in KINDS), *(demand.symbol for demand in DEMANDS.values())}
+    found |= {
+        *SOURCES,
+        *(each.name for each in KINDS),
+    }
+    listed = {*OF_MOTION, *REACTIONS, *outputs_of("sliding", "springs"), "residual_rotation", *DEMANDS_OF_SET}
+    found |= {text for name in listed for text in (OUTPUTS[name].symbol, OUTPUTS[name].words)}
     return found - {""}
 
 

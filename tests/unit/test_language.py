@@ -24,18 +24,17 @@ from rockflex.fragility import LIMIT_STATES
 from rockflex.fragility._jackknife import ONE_RECORDING
 from rockflex.fragility._outcomes import FEW_RUNS, PARTS
 from rockflex.plot._design import _AXES
-from rockflex.plot._fragility import _QUANTITIES as _CLOUD_QUANTITIES
-from rockflex.plot._history import _QUANTITIES
+from rockflex.plot._history import PANELS
 from rockflex.plot._loops import _ELEMENT_NAMES
 from rockflex.plot._motion import _NAMES as _SPECTRA
-from rockflex.plot._record_set import LABELS, LINES
+from rockflex.plot._record_set import LINES
 from rockflex.report._publication_files import jinja_templates_in
 from rockflex.report.run._report_tables import ASSUMPTIONS, SIDES, STATUS
 from rockflex.report.run._set_page import STATISTIC_HEADS
 from rockflex.report.run._sheet import TEMPLATES
 from rockflex.response._comparison import STATISTICS
-from rockflex.response._demands import DEMANDS
 from rockflex.response._limit_checks import KINDS, SOURCES
+from rockflex.response._outputs import COMPARED_DEMANDS, DEMANDS_OF_SET, HISTORY, OUTPUTS
 from rockflex.structure._law_bars import BARS
 
 STRIPES = pd.DataFrame({"level": [0.2] * 10 + [0.4] * 10, "max_rotation": [0.001] * 8 + [0.01] * 12})
@@ -78,19 +77,19 @@ def labels():
     yield from (words_of_class(name) for name in kinds if name not in modified)
     yield from (words_of_class(name).lower() for name in modified)
     yield from (*STATUS.values(), *ASSUMPTIONS, *SIDES, *STATISTICS.values(), *STATISTIC_HEADS.values(), *SOURCES)
-    yield from (text for demand in DEMANDS.values() for text in (demand.symbol, demand.compared_as))
+    yield from (OUTPUTS[name].symbol for name in (*DEMANDS_OF_SET, *COMPARED_DEMANDS))
     yield from (each.name for each in KINDS)
-    yield from (text for each in _QUANTITIES.values() for text in (each.symbol, each.words))
+    yield from (HISTORY[name].symbol for name in PANELS)
+    yield from (each.words for each in OUTPUTS.values() if each.of == "tendons")
     yield from (
         *FEW_RUNS,
         *(f"{part}: {{note}}" for part in PARTS),
         ONE_RECORDING,
         *_SPECTRA.values(),
-        *(words for _, words, _ in _CLOUD_QUANTITIES.values()),
     )
     yield from (each.symbol for each in LIMIT_STATES.values() if "\\" not in each.symbol)
     yield from (text for name, (_, words, _) in _AXES.items() for text in (words, name.replace("_", " ")))
-    yield from (*_ELEMENT_NAMES.values(), *LABELS.values(), *(label for *_, label in LINES.values()))
+    yield from (*_ELEMENT_NAMES.values(), *(label for *_, label in LINES.values()))
     yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
     yield from texts_of_answers()
 

@@ -44,14 +44,14 @@ def test_histories_show_slip_and_edges_where_the_ground_makes_them_matter(hops, 
         return [axes.get_ylabel().split(" [")[0] for axes in rf.plot_history(responses).axes]
 
     usual = names(stands)
-    assert names(slides) == [*usual, "slip"]
-    assert names(hops) == [*usual, "slip", "rise of edges"]
+    assert names(slides) == [*usual, "x"]
+    assert names(hops) == [*usual, "x", "edges"]
     assert len(rf.plot_history(stands, panels=["slip", "edge_uplift"]).axes) == 2
     figure = drawn(rf.plot_history([hops, slides], labels=["soil", "rigid"]))
-    first, *_, mark = panel(figure, "slip").get_lines()
+    first, *_, mark = panel(figure, "x").get_lines()
     np.testing.assert_array_equal(first.get_ydata(), hops.slip)
     assert abs(mark.get_ydata()[0]) == slides.max_slip
-    edges = panel(figure, "rise of edges")
+    edges = panel(figure, "edges")
     left, right, *_ = edges.get_lines()
     np.testing.assert_array_equal(np.stack((left.get_ydata(), right.get_ydata()), axis=1), hops.edge_uplift)
     assert left.get_color() == right.get_color()

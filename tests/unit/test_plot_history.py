@@ -47,8 +47,8 @@ def curve(axes, index):
 def test_panels_hold_a_line_for_every_response(figure, four):
     assert [axes.get_ylabel() for axes in figure.axes] == [
         "θ [rad]",
-        r"$u_{\mathrm{top}}$, relative [m]",
-        r"$u_{\mathrm{top}}$, total [m]",
+        r"$u_{\mathrm{top}}$ relative [m]",
+        r"$u_{\mathrm{top}}$ total [m]",
         "$M_b$ [MN m]",
         "$V_b$ [MN]",
     ]
@@ -235,7 +235,7 @@ def test_matplotlib_is_imported_late_and_pyplot_never():
 
 def test_panels_are_chosen_and_lettered_from_the_top(four):
     figure = plot_history(four, panels=("top_displacement", "rotation"), title="")
-    assert [axes.get_ylabel() for axes in figure.axes] == [r"$u_{\mathrm{top}}$, relative [m]", "θ [rad]"]
+    assert [axes.get_ylabel() for axes in figure.axes] == [r"$u_{\mathrm{top}}$ relative [m]", "θ [rad]"]
     assert [notes(axes)[0] for axes in figure.axes] == ["A", "B"]
     np.testing.assert_array_equal(curve(figure.axes[0], 2).get_ydata(), four[2].top_displacement)
     assert figure.axes[1].get_xlabel() == "time [s]"
@@ -258,7 +258,7 @@ def test_without_a_known_height_there_is_no_panel_of_the_total_displacement():
     response = rf.simulate(bare, RECORD, "2DOF-S")
     assert math.isnan(response.max_total_top_displacement)
     labels = [axes.get_ylabel() for axes in plot_history(response).axes]
-    assert labels == ["θ [rad]", r"$u_{\mathrm{top}}$, relative [m]", "$M_b$ [MN m]", "$V_b$ [kN]"]
+    assert labels == ["θ [rad]", r"$u_{\mathrm{top}}$ relative [m]", "$M_b$ [MN m]", "$V_b$ [kN]"]
     with pytest.raises(
         rf.InputError, match=r"^The height of the top is not known, so there is no total displacement\."
     ):

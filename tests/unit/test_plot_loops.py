@@ -201,7 +201,7 @@ def test_loops_are_the_force_of_the_mode_over_the_top(pair):
     share = LAW.post_yield_ratio
     spring = share * x / top + (1 - share) * LAW.yield_displacement * pair[1].yielding
     np.testing.assert_allclose(1e3 * force, mass * omega**2 * spring, rtol=1e-9, atol=1e-6)
-    assert axes.get_xlabel() == r"$u_{\mathrm{top}}$, relative [m]"
+    assert axes.get_xlabel() == r"$u_{\mathrm{top}}$ relative [m]"
     assert axes.get_ylabel() == "$V_b$ [kN]"
     right, high = axes.get_xlim()[1], axes.get_ylim()[1]
     assert right > max(r.max_top_displacement for r in pair)

@@ -9,7 +9,7 @@ import pytest
 import rockflex as rf
 from builders import PROPERTIES, make_frame, random_shaking
 from rockflex.response._interpolation import quintic_between
-from rockflex.response._tables import UNITS_OF_HISTORY
+from rockflex.response._outputs import COLUMNS
 
 FRAME = make_frame(n_stories=3, period=0.6, aspect_ratio=8.0)
 MOTION = rf.GroundMotion(random_shaking(4, 9.0, 4.0, 0.02), 0.02, "random")
@@ -152,7 +152,7 @@ def test_what_needs_the_events_is_not_told_by_samples(response):
 def test_a_table_has_every_state_twice_at_events(response):
     table = response.to_frame()
     assert isinstance(table, pd.DataFrame)
-    assert list(table.columns) == list(UNITS_OF_HISTORY)[1:]
+    assert list(table.columns) == list(COLUMNS)[1:]
     assert table.index.name == "time"
     np.testing.assert_array_equal(table.index, response.time)
     for name in table:

@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame, random_shaking
-from rockflex.response._tables import QUANTITIES
+from rockflex.response._outputs import HISTORY
 
 FRAME = make_frame(n_stories=3, period=0.6, aspect_ratio=8.0)
 MOTION = rf.GroundMotion(random_shaking(4, 9.0, 4.0, 0.02), 0.02, "random")
@@ -23,11 +23,11 @@ def test_a_data_set_has_all_quantities_labelled(response):
     data = response.to_xarray()
     sizes = {"mode": 2, "floor": 3, "element": 2, "tendon": 1, "edge": 2}
     assert dict(data.sizes) == sizes | {"time": response.time.size}
-    assert set(data) == set(QUANTITIES) - {"time", "soil_pressure", "bearing_pressure", "spring_force"}
+    assert set(data) == set(HISTORY) - {"time", "soil_pressure", "bearing_pressure", "spring_force"}
     assert data.attrs == {"model": "3DOF-S"}
     for name, values in data.items():
         np.testing.assert_array_equal(values, getattr(response, name))
-        assert values.attrs.get("units", "") == QUANTITIES[name]
+        assert values.attrs.get("units", "") == HISTORY[name].si
     top = data["floor_acceleration"].sel(floor=3)
     np.testing.assert_array_equal(top, response.floor_acceleration[:, 2])
     left = data["edge_uplift"].sel(edge="left")

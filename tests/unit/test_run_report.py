@@ -73,9 +73,9 @@ def test_the_peaks_are_those_of_the_responses(page, three):
             assert value == getattr(response, name)
             assert number(text) == pytest.approx(value / size, rel=5.1e-3)
         assert int(found["n_uplifts"][0]) == response.n_uplifts
-        text, value = found["floor_acceleration"]
+        text, value = found["max_floor_acceleration"]
         assert value == response.floors.floor_acceleration.max()
-        assert number(text) == pytest.approx(value / 9.81, rel=6e-3)
+        assert number(text) == pytest.approx(value, rel=6e-3)
 
 
 def test_the_checks_follow_from_the_responses(page, three):
@@ -151,8 +151,7 @@ def test_a_page_of_elements_springs_and_slip(report):
         assert row[4][2] == found[0].max_element_elongation[k]
     assert "12 springs without tension" in reader.text
     assert "the base slides at μ = 0.4" in reader.text
-    head, row = reader.tables["peaks"]
-    assert {"slipmm", "edge up"} & {cell[0].split("[")[0] for cell in head}
+    _, row = reader.tables["peaks"]
     assert cells(row)["max_edge_settlement"][1] == found[0].max_edge_settlement
 
 

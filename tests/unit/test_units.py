@@ -11,7 +11,6 @@ import rockflex as rf
 from report_case import FRAME, HELD, PULSE, SPRINGS, runs
 from rockflex.cli._app import app
 from rockflex.foundation.units import QUANTITIES, UnitSystem, named_unit, with_decimal_commas
-from rockflex.response._demands import DEMANDS
 
 # Exponents of force, length and time.
 DIMENSIONS = {
@@ -76,11 +75,6 @@ def test_a_table_may_have_a_usual_unit_in_the_system_kn_alone():
     assert UnitSystem().of("displacement", "m").name == "m"
     assert UnitSystem("MN").of("displacement", "m").name == "mm"
     assert named_unit("kip s²/in").heading("m") == "m [kip s²/in]"
-
-
-def test_every_demand_has_a_unit():
-    units = {DEMANDS[name].unit_in(UnitSystem("kip-in")).name for name in DEMANDS}
-    assert units == {"rad", "", "in", "g", "kip in", "kip"}
 
 
 @pytest.mark.parametrize(

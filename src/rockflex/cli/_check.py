@@ -167,10 +167,10 @@ def read_limits(file: Path | None) -> "CheckLimits":
 
 
 def _print_set(found: "RecordSet", units: UnitSystem) -> None:
-    from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
+    from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS, legend
 
     peaks, statistics = found.peaks, found.statistics
-    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
+    shown = {name: OUTPUTS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
     rows = [
         [
             str(motion),
@@ -180,15 +180,17 @@ def _print_set(found: "RecordSet", units: UnitSystem) -> None:
         for motion, row in peaks.iterrows()
     ]
     console.print_line()
-    heads = [unit.heading(DEMANDS[name].symbol) for name, unit in shown.items()]
+    heads = [unit.heading(OUTPUTS[name].symbol) for name, unit in shown.items()]
     console.print_rows(("record", "status", *heads), rows, 2)
     console.print_line()
     rows = [
-        [DEMANDS[name].symbol, unit, *(console.number(row[column] / size) for column in STATISTICS)]
+        [OUTPUTS[name].symbol, unit, *(console.number(row[column] / size) for column in STATISTICS)]
         for name, row in zip(map(str, statistics.index), statistics.to_dict("records"), strict=True)
-        for size, unit in (DEMANDS[name].unit_in(units),)
+        for size, unit in (OUTPUTS[name].unit_in(units),)
     ]
     console.print_rows(("demand", "unit", *STATISTICS.values()), rows, 2)
+    for line in legend(map(str, statistics.index), of_few=True):
+        console.print_line(line)
     for reason in dict.fromkeys(statistics["reason"]):
         console.print_line(f"design: {reason}")
 

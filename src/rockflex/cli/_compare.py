@@ -75,7 +75,7 @@ def compare(
     from rockflex.cli._run_results import checked_path_of_report
     from rockflex.report.run._report_page import write_report
     from rockflex.response._comparison import STATISTICS
-    from rockflex.response._demands import DEMANDS
+    from rockflex.response._outputs import OUTPUTS, legend
     from rockflex.studies._compare import compare as run
 
     if "," in model:
@@ -114,19 +114,21 @@ def compare(
         units_shown = UnitSystem(output_units or "kN")
         rows = [
             [
-                f"{known.compared_as or known.symbol} [{unit or '-'}]",
+                f"{known.symbol} [{unit or '-'}]",
                 *([STATISTICS[each]] if several else []),
                 *(console.number(float(value) / size) for value in values.loc[demand]),
                 *(console.number(float(value), 3) for value in differences.loc[demand]),
             ]
             for demand in tables[shown[0]][0].index
-            for known in (DEMANDS[str(demand)],)
-            for size, unit in (units_shown.of(known.quantity),)
+            for known in (OUTPUTS[str(demand)],)
+            for size, unit in (known.unit_in(units_shown),)
             for each, (values, differences) in tables.items()
         ]
         among = f"; {comparison.motion.name} governs" if several else f": {comparison.motion.name}"
         console.print_line(f"{model}, {comparison.n_records} record{'s' if several else ''}{among}")
         console.print_rows(head, rows, 2 if several else 1)
+        for line in legend(map(str, tables[shown[0]][0].index), of_few=True):
+            console.print_line(line)
     console.print_warnings([f"{name}: {text}" for name, each in loaded.items() for text in each.warnings])
     counts = zip(names, comparison.overturned, strict=True)
     console.print_warnings(f"{name} overturned under {n} of {len(found)} records" for name, n in counts if n)

@@ -175,7 +175,7 @@ def show(file: File, json: options.Json = False) -> None:
 
 def _print_project(project: "Project", *, json: bool) -> None:
     """Print the contents of a project, and its results."""
-    from rockflex.response._demands import DEMANDS
+    from rockflex.response._outputs import OUTPUTS
 
     results = project.results
     if json:
@@ -212,10 +212,10 @@ def _print_project(project: "Project", *, json: bool) -> None:
         console.print_line("no results: rockflex project run computes them")
         return
     design = _by_structure(results.statistics, "demand", "design")
-    shown = {name: DEMANDS[name].unit_in(KN) for name in design}
+    shown = {name: OUTPUTS[name].unit_in(KN) for name in design}
     rows = [
         (
-            unit.heading(DEMANDS[name].symbol),
+            unit.heading(OUTPUTS[name].symbol),
             *(console.number(design[name].get(each, math.nan) / unit.size) for each in project.structures),
         )
         for name, unit in shown.items()

@@ -24,8 +24,9 @@ from rockflex.report.run._report_page import checked_report_path, write_report
 from rockflex.report.run._reported_runs import MAX_RUNS
 from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._friction import IMPACT_WINDOW
+from rockflex.response._outputs import ALL_RESULTS, OF_MOTION, OF_TABLES, OUTPUTS, REACTIONS, legend, outputs_of
 from rockflex.response._response import Response
-from rockflex.response._tables import RESULT_UNITS, history_columns
+from rockflex.response._tables import history_columns
 from rockflex.studies._arguments import ground_under_structure
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 
@@ -35,25 +36,14 @@ if TYPE_CHECKING:
 
 
 MAX_LISTED = 5
-LEGEND = (
-    "u_top: relative to the rotating base; total: relative to the ground\n"
-    "V_b, M_b: of the elastic forces; ΣF_x: horizontal force on the ground, including\n"
-    "the base's inertia and the damping; N_min: least vertical force on the ground"
-)
 PASSED = f"† θ passed {NOMINAL.label}, the nominal limit of overturning"
 FRICTION = (
     "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
     "the base slides where it passes {mu:g}"
 )
-OF_ELEMENTS = (
-    "F, E: largest force of each element, and the energy that it takes (with --out);\n"
-    "θ_end: rotation at the end of the run, where it is not closed"
-)
+OF_ELEMENTS = "F, E: largest force of each element, and the energy that it takes (with --out)"
 OF_STORIES = "μ: largest drift of a story over its yield drift; drift: what is left at rest"
-OF_BASE = {
-    "slip": "slip: largest displacement of the base along the ground; x_end: where it rests",
-    "edge": "edge up, down: how far an edge of the base rises above the unloaded springs, and sinks below them",
-}
+OF_TENDONS, RESIDUAL = ("max_tendon_force", "tendon_utilisation"), "residual_rotation"
 STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
 Columns = list[tuple[str, list[str]]]
 
@@ -68,13 +58,13 @@ def print_run_peaks(
         *_vertical_component_names(batch.motions, units),
     ):
         console.print_line(line)
-    elements, base = batch.properties.elements, _base_motion_columns(batch, runs, units)
-    peaks, ground = _peak_columns(runs, units), _columns_of_peaks(runs, REACTIONS, units) + base
+    elements, base = batch.properties.elements, _outputs_of_base(batch)
+    peaks, ground = _peak_columns(runs, units), _columns_of_outputs(runs, (*REACTIONS, *base), units)
     tables = [(peaks + ground, 1)]
     if not console.table_fits(_table_of_all_runs(batch, runs, *tables[0])):
         tables = [(peaks, 1), (ground, 0)]
     if times:
-        tables.append((_columns_of_peaks(runs, PEAK_TIMES, units, digits=5), 0))
+        tables.append((_columns_of_times(runs, units), 0))
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
@@ -89,13 +79,12 @@ def print_run_peaks(
     console.print_line(f"{number_with_noun(len(runs), 'run')} in {console.number(elapsed, 3)} s{each}")
 
 
-def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterator[str]:
+def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Sequence[str]) -> Iterator[str]:
     """Yield lines below the tables about what they show."""
     yield ""
     if any(run.peaks["nominal_overturning"] for run in runs):
         yield PASSED
-    yield LEGEND
-    yield from (said for name, said in OF_BASE.items() if any(heading.startswith(name) for heading, _ in base))
+    yield from legend([*_outputs_of_motion(runs), *REACTIONS, *base])
     if batch.properties.elements:
         yield OF_ELEMENTS
     if batch.properties.stories:
@@ -142,62 +131,51 @@ def _print_first_lines(found: Sequence[str], rest: str) -> None:
         console.print_remark(rest.format(len(found) - MAX_LISTED))
 
 
-# Name of the column, name of the peak, kind of quantity, and its usual unit as in `UnitSystem.of`.
-Peaks = Sequence[tuple[str, str, str] | tuple[str, str, str, str]]
-REACTIONS: Peaks = (("ΣF_x", "max_horizontal_reaction", "force"), ("N_min", "min_vertical_reaction", "force"))
-SLIPS: Peaks = (("slip", "max_slip", "displacement"), ("x_end", "residual_slip", "displacement"))
-EDGES: Peaks = (("edge up", "max_edge_uplift", "displacement"), ("edge down", "max_edge_settlement", "displacement"))
-PEAKS: Peaks = (
-    ("θ_max", "max_rotation", "rotation", "rad"),
-    ("u_top relative", "max_top_displacement", "displacement", "m"),
-    ("u_top total", "max_total_top_displacement", "displacement", "m"),
-    ("M_b", "max_base_moment", "moment"),
-    ("V_b", "max_base_shear", "force"),
-)
-TENDONS: Peaks = (("T", "max_tendon_force", "force"), ("T/F_y", "tendon_utilisation", "ratio"))
-RESIDUAL: Peaks = (("θ_end", "residual_rotation", "rotation", "rad"),)
-PEAK_TIMES: Peaks = (
-    ("t(θ_max)", "time_of_max_rotation", "time"),
-    ("t(u_top relative)", "time_of_max_top_displacement", "time"),
-    ("t(u_top total)", "time_of_max_total_top_displacement", "time"),
-    ("t(M_b)", "time_of_max_base_moment", "time"),
-    ("t(V_b)", "time_of_max_base_shear", "time"),
-    ("t(ΣF_x)", "time_of_max_horizontal_reaction", "time"),
-    ("t(N_min)", "time_of_min_vertical_reaction", "time"),
-    ("end", "end_time", "time"),
-)
+def _outputs_of_motion(runs: Sequence[BatchRun]) -> tuple[str, ...]:
+    """Return the outputs before the reactions, with those of tendons and what is left where there is any."""
+    found = OF_MOTION
+    if any(run.peaks["max_tendon_force"] for run in runs):
+        found += OF_TENDONS
+    if any(run.elements and run.peaks[RESIDUAL] for run in runs):
+        found += (RESIDUAL,)
+    return found
 
 
-def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, units: UnitSystem, digits: int = 4) -> Columns:
+def _outputs_of_base(batch: RunBatch) -> tuple[str, ...]:
+    """Return how far the base moves on a ground that lets it slide, or that gives."""
+    ground = ground_under_structure(batch.properties, batch.options.ground)
+    slides, gives = ground is not None and ground.slides, ground is not None and ground.springs is not None
+    return (outputs_of("sliding") if slides else ()) + (outputs_of("springs") if gives else ())
+
+
+def _columns_of_outputs(runs: Sequence[BatchRun], names: Sequence[str], units: UnitSystem) -> Columns:
     columns: Columns = []
-    for symbol, name, *quantity in peaks:
+    for name in names:
         values = [run.peaks[name] for run in runs]
-        unit = units.of(*quantity, largest=max(abs(value or 0.0) for value in values))
-        cells = [console.number(None if value is None else value / unit.size, digits) for value in values]
-        columns.append((unit.heading(symbol), cells))
+        unit = OUTPUTS[name].unit_in(units, largest=max(abs(value or 0.0) for value in values))
+        cells = [console.number(None if value is None else value / unit.size) for value in values]
+        columns.append((unit.heading(OUTPUTS[name].symbol), cells))
     return columns
 
 
-def _peak_columns(runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
-    columns: Columns = [
-        ("status", [_run_status_text(run) for run in runs]),
-        *_columns_of_peaks(runs, PEAKS, units),
-        ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
+def _columns_of_times(runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
+    """The times of the peaks, and of the end."""
+    times = {f"time_of_{name}": f"t({OUTPUTS[name].symbol})" for name in (*OF_MOTION, *REACTIONS)}
+    size, unit = units.of("time")
+    return [
+        (f"{symbol} [{unit}]", [console.number(None if t is None else t / size, 5) for t in values])
+        for name, symbol in (times | {"end_time": OUTPUTS["end_time"].symbol}).items()
+        for values in ([run.peaks[name] for run in runs],)
     ]
-    if any(run.peaks["max_tendon_force"] for run in runs):
-        columns += _columns_of_peaks(runs, TENDONS, units)
-    if any(run.elements and run.peaks["residual_rotation"] for run in runs):
-        columns += _columns_of_peaks(runs, RESIDUAL, units)
+
+
+def _peak_columns(runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
+    first, rest = len(OF_MOTION), _columns_of_outputs(runs, _outputs_of_motion(runs), units)
+    impacts = ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]
+    status = ("status", [_run_status_text(run) for run in runs])
+    columns: Columns = [status, *rest[:first], (OUTPUTS["n_impacts"].symbol, impacts), *rest[first:]]
     times = [None if run.run_time is None else 1e3 * run.run_time for run in runs]
     return columns if set(times) == {None} else [*columns, ("time [ms]", [console.number(t, 3) for t in times])]
-
-
-def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
-    """How far the base moves on a ground that lets it slide, or that gives."""
-    ground = ground_under_structure(batch.properties, batch.options.ground)
-    slips = SLIPS if ground is not None and ground.slides else ()
-    edges = EDGES if ground is not None and ground.springs is not None else ()
-    return _columns_of_peaks(runs, [*slips, *edges], units)
 
 
 def _vertical_component_names(motions: Sequence[GroundMotion], units: UnitSystem) -> list[str]:
@@ -225,17 +203,13 @@ def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
 
 def _numbered_columns(runs: Sequence[BatchRun], units: UnitSystem) -> Iterator[Columns]:
     """The peaks of each element and each story that yields, by its number."""
-    for name, symbol, quantity in (
-        ("max_element_force", "F", "force"),
-        ("element_energy", "E", "energy"),
-        ("ductility", "μ", "ratio"),
-        ("residual_drift", "drift", "displacement"),
-    ):
-        unit = units.of(quantity)
+    for name in ("max_element_force", "element_energy", "ductility", "residual_drift"):
+        known = OF_TABLES[f"{name}_*"]
+        unit = known.unit_in(units)
         values = [run.elements.get(name) for run in runs]
         yield [
             (
-                unit.heading(f"{symbol}_{k + 1}"),
+                unit.heading(f"{known.symbol}_{k + 1}"),
                 [console.number(None if each is None else each[k] / unit.size) for each in values],
             )
             for k in range(max((len(each) for each in values if each is not None), default=0))
@@ -277,7 +251,7 @@ UNITS = {
     "pga": MEASURES["pga"].unit,
     "elapsed": "s",
     "run_time": "s",
-    **RESULT_UNITS,
+    **{name: each.si for name, each in ALL_RESULTS.items() if each.si},
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
     "initial_rotation": "rad",

@@ -25,7 +25,7 @@ from matplotlib.ticker import FixedFormatter, Formatter
 from rockflex.foundation.checks import is_one_of
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path, write_given_file
-from rockflex.foundation.language import Language, chosen_language, use_language
+from rockflex.foundation.language import Language, chosen_language, translated, use_language
 from rockflex.foundation.number_format import unit_with_prefix
 from rockflex.foundation.shown import shown
 from rockflex.foundation.units import (
@@ -212,6 +212,12 @@ def figures_in_units(units: UnitSystem | None) -> Generator[None, None, None]:
 def chosen_units() -> UnitSystem | None:
     """Return the system of units of figures, if one is chosen."""
     return _UNITS.get()
+
+
+def symbol_in_mathematics(symbol: str) -> str:
+    """Return a symbol in the chosen language, its words with subscripts in mathematics: "u_top total"."""
+    words = (re.sub(r"_([^\W_]{2,}+)", r"_{\\mathrm{\1}}", word) for word in translated(symbol).split(" "))
+    return " ".join(f"${word}$" if "_" in word else word for word in words)
 
 
 def axis_unit(quantity: str, largest: float = 0.0, usual: str = "") -> Unit:

@@ -32,6 +32,7 @@ from rockflex.fragility._lognormal import LognormalFragility, fit_capacities, fi
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
+from rockflex.response._outputs import ALL_RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,12 +46,7 @@ _OF_INCREMENTAL = (
     *("first_overturning_scale", "last_survival_scale"),
 )
 _MAX_ROWS = 6  # rows of panels
-_QUANTITIES = {
-    "max_rotation": (r"$θ_{\mathrm{max}}$", "{symbol}", "rad"),
-    "max_top_displacement": (r"$u_{\mathrm{top,max}}$", "{symbol}, relative to the base", "m"),
-    "max_total_top_displacement": (r"$u_{\mathrm{top,max}}$", "total {symbol}", "m"),
-    "max_ductility": (r"$μ_{\mathrm{max}}$", "{symbol} of the stories", ""),
-}
+_QUANTITIES = ("max_rotation", "max_top_displacement", "max_total_top_displacement", "max_ductility")
 _TINY = 6.75
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
 _CROSSES = 0.038  # and of the crosses
@@ -551,8 +547,8 @@ def plot_clouds(
     names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with figures.applied_figure_style(size=size):
-        symbol, words, unit = _QUANTITIES[quantity]
-        y = Unit(1.0, unit).heading(translated(words, symbol=symbol))  # in SI units, as c1 in the panels
+        known = ALL_RESULTS[quantity]
+        y = Unit(1.0, known.si).heading(figures.symbol_in_mathematics(known.symbol))  # in SI units, as c1 in the panels
         figure, panels = tables.structure_panels(names, 2, 2.45, tables.measure_axis_name(measure), y)
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:

@@ -20,6 +20,7 @@ from rockflex.foundation.units import Unit
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
 from rockflex.response._history import History
+from rockflex.response._outputs import HISTORY
 from rockflex.response._response import Response, history_of
 from rockflex.structure._elements import Tendon
 from rockflex.structure._ground import Springs
@@ -198,17 +199,19 @@ def _usual_line_style(history: History, max_modes: int) -> LineStyle | None:
 
 @dataclass(frozen=True)
 class PanelQuantity:
-    """The quantity of a panel: its name in a `History`, symbol, kind among `QUANTITIES`, and label if in words."""
+    """The quantity of a panel, by its name in a `History`."""
 
     name: str
-    symbol: str
-    kind: str
-    words: str = ""
+
+    @property
+    def kind(self) -> str:
+        """Its kind among `QUANTITIES`."""
+        return HISTORY[self.name].quantity
 
     @property
     def label(self) -> str:
         """Label of an axis, without the unit."""
-        return translated(self.words, symbol=self.symbol) if self.words else translated(self.symbol)
+        return figures.symbol_in_mathematics(HISTORY[self.name].symbol)
 
     def of(self, history: History) -> Array:
         """Values over time."""
@@ -219,20 +222,10 @@ class PanelQuantity:
         return float(getattr(curve.response, f"max_{self.name}"))
 
 
-_QUANTITIES = {
-    quantity.name: quantity
-    for quantity in (
-        PanelQuantity("rotation", "θ", "rotation"),
-        PanelQuantity("top_displacement", r"$u_{\mathrm{top}}$", "displacement", "{symbol}, relative"),
-        PanelQuantity("total_top_displacement", r"$u_{\mathrm{top}}$", "displacement", "{symbol}, total"),
-        PanelQuantity("base_moment", r"$M_b$", "moment"),
-        PanelQuantity("base_shear", r"$V_b$", "force"),
-        PanelQuantity("horizontal_reaction", r"$ΣF_x$", "force"),
-        PanelQuantity("slip", "slip", "displacement"),
-        PanelQuantity("edge_uplift", "edges", "displacement", "rise of edges"),
-    )
-}
-PANELS = tuple(_QUANTITIES)
+PANELS = (
+    "rotation", "top_displacement", "total_top_displacement", "base_moment", "base_shear", "horizontal_reaction",
+    "slip", "edge_uplift",
+)  # fmt: skip
 
 
 def default_panels(curves: list[ResponseCurve]) -> list[str]:
@@ -254,7 +247,7 @@ def panel_quantities(panels: Sequence[str]) -> list[PanelQuantity]:
         raise InputError(
             f"panels must be one or more of {', '.join(PANELS)}, each once, but {shown(panels)} was given."
         )
-    return [_QUANTITIES[name] for name in names]
+    return [PanelQuantity(name) for name in names]
 
 
 def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[Unit, float]:
@@ -701,7 +694,7 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     >>> ground = rf.Ground(springs=bed, base_inertia=1e4)
     >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S", ground=ground))
     >>> [axes.get_ylabel() for axes in figure.axes]
-    ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
+    ['edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
     """
     (curve,) = curves = response_curves(response)
     history = curve.history
@@ -744,7 +737,7 @@ def _draw_base_edges(axes: Axes, history: History) -> None:
     for values, name, color in zip(history.edge_uplift.T / unit.size, names, (BLUE, RED), strict=True):
         axes.plot(history.time, values, color=color, linewidth=0.9, label=name)
     axes.axhline(0.0, color=GRAY, linewidth=0.7)
-    axes.set_ylabel(unit.heading(translated("rise of edges")))
+    axes.set_ylabel(unit.heading(figures.symbol_in_mathematics(HISTORY["edge_uplift"].symbol)))
     axes.legend(loc="upper right", ncols=2)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend

@@ -310,7 +310,7 @@ def plot_hysteresis(
     ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
     >>> figure = rf.plot_hysteresis(response)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
-    ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
+    ('$u_{\\mathrm{top}}$ relative [m]', '$V_b$ [kN]')
     """
     curves = histories.response_curves(responses, labels)
     with figures.applied_figure_style(size=size):
@@ -363,7 +363,7 @@ def plot_yielding(
     ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
     >>> figure = rf.plot_yielding(response)
     >>> len(figure.axes), figure.axes[-1].get_xlabel()
-    (3, '$u_{\\mathrm{top}}$, relative [m]')
+    (3, '$u_{\\mathrm{top}}$ relative [m]')
     """
     curves = histories.response_curves(responses, labels)
     with figures.applied_figure_style(size=size):

@@ -15,7 +15,7 @@ from rockflex.foundation.shown import few_texts_shown, shortened
 from rockflex.foundation.units import KN
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, GRAY, GREEN, ORANGE, RED, SKY, SMALL, Size
-from rockflex.response._demands import DEMANDS
+from rockflex.response._outputs import OUTPUTS
 from rockflex.response._record_set import RecordSet
 
 USUAL = ("max_rotation", "max_total_top_displacement", "max_base_moment", "max_base_shear")
@@ -24,15 +24,6 @@ LINES = {
     "mean": (SKY, "-", 1.4, "mean"),
     "median": (GREEN, "--", 1.2, "median"),
     "fractile_84": (ORANGE, ":", 1.6, "84 % fractile"),
-}
-LABELS = {
-    "max_rotation": r"$\theta_{\max}$",
-    "max_top_displacement": "$u_{top}$",
-    "max_total_top_displacement": "total $u_{top}$",
-    "max_base_moment": "$M_b$",
-    "max_base_shear": "$V_b$",
-    "max_horizontal_reaction": r"$\Sigma F_x$",
-    "min_vertical_reaction": "$N_{min}$",
 }
 _MAX_NAMES, _MAX_LETTERS = 30, 24  # records that are all named, and letters of a name
 
@@ -99,7 +90,7 @@ def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
     row: Any = found.statistics.loc[name]
     stands = values[~fallen]
     chosen = figures.chosen_units()
-    size, unit = DEMANDS[name].unit_in(chosen or KN)
+    size, unit = OUTPUTS[name].unit_in(chosen or KN)
     if chosen is None and unit.startswith("kN"):
         size, unit = unit_with_prefix(float(abs(stands).max(initial=0.0)), unit.removeprefix("k"))
     places = [place for place, fell in enumerate(fallen) if not fell]
@@ -115,7 +106,7 @@ def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
             [0.97] * int(fallen.sum()), [place for place, fell in enumerate(fallen) if fell], color=RED, marker="x",
             markersize=4.0, linestyle="none", transform=axes.get_yaxis_transform(), label=translated("overturns"),
         )  # fmt: skip
-    axes.set_xlabel(f"{translated(LABELS.get(name, DEMANDS[name].symbol))} [{unit}]")
+    axes.set_xlabel(f"{figures.symbol_in_mathematics(OUTPUTS[name].symbol)} [{unit}]")
     axes.margins(x=0.12)
     axes.set_xlim(min(0.0, axes.get_xlim()[0]) if stands.min(initial=0.0) < 0.0 else 0.0)
     axes.set_ylim(len(values) - 0.5, -0.5)

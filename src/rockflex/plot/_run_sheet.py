@@ -55,7 +55,7 @@ def draw_run_sheet(
             _label_inside_panel(axes, mark)
             unit, _ = histories.quantity_axis_scale(quantity, curves)
             room = height / len(quantities)
-            label = unit.heading(quantity.label if room > _MIN_PANEL_MM else translated(quantity.symbol))
+            label = unit.heading(quantity.label if room > _MIN_PANEL_MM else quantity.label.split(" ")[0])
             lines = label.replace(" [", "\n[") if room < _ONE_LINE_MM else label
             axes.set_ylabel(lines, fontsize=figures.scaled_font_size(8.0))
             axes.tick_params(labelbottom=row == len(quantities) - 1)

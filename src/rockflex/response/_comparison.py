@@ -11,7 +11,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.values import Value
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.response._demands import COMPARED_DEMANDS
+from rockflex.response._outputs import COMPARED_DEMANDS
 from rockflex.response._record_set import FRACTILE, MEDIAN, fractile
 from rockflex.response._response import Response
 

@@ -4,7 +4,6 @@ import io
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from inspect import getdoc
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,8 @@ import numpy as np
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path, write_given_file
 from rockflex.foundation.shown import shown
-from rockflex.response._tables import DIMENSIONS, QUANTITIES, history_values, import_xarray
+from rockflex.response._outputs import HISTORY
+from rockflex.response._tables import history_values, import_xarray
 
 History = Any  # rockflex.response.History, which imports this module
 
@@ -38,14 +38,9 @@ class Variable:
 def history_variables(history: History, quantities: Sequence[str] | None) -> list[Variable]:
     """Return the time and quantities of a history; None: all that it has."""
     return [
-        Variable(
-            name,
-            values,
-            QUANTITIES[name],
-            (getdoc(getattr(type(history), name)) or "").partition("\n")[0],
-            DIMENSIONS.get(name, "") if values.ndim > 1 else "",
-        )
+        Variable(name, values, known.si, known.words, known.across if values.ndim > 1 else "")
         for name, values in ({"time": history.time} | history_values(history, quantities)).items()
+        for known in (HISTORY[name],)
     ]
 
 

@@ -1,10 +1,6 @@
 """Histories and tables of runs for MATLAB, and for programs that read NetCDF."""
 
-import re
-from collections.abc import Mapping, Sequence
-from fnmatch import fnmatchcase
-from functools import cache
-from inspect import getdoc
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +11,8 @@ from rockflex.foundation.shown import shown
 from rockflex.motion._measures import MEASURES
 from rockflex.response._export_files import Variable, history_variables, write_matlab, write_netcdf
 from rockflex.response._history import History
+from rockflex.response._outputs import described_output
 from rockflex.response._response import Response, history_of
-from rockflex.response._tables import QUANTITIES, RESULT_UNITS
 
 _EXACT = 2.0**53  # up to which a double holds every whole number
 
@@ -99,7 +95,7 @@ def to_netcdf(result: Any, path: str | Path, quantities: Sequence[str] | None = 
     >>> response = rf.simulate(column, rf.one_sine_pulse(amplitude=3.0, period=1.0), "2DOF-S")
     >>> with xarray.open_dataset(rf.to_netcdf(response, "run.nc")) as file:
     ...     print(file["rotation"].attrs)
-    {'units': 'rad', 'long_name': 'θ in rad, shape (n_states,).'}
+    {'units': 'rad', 'long_name': 'rotation of the base'}
     """
     return write_netcdf(path, *_model_and_variables(result, quantities))
 
@@ -153,20 +149,12 @@ def unit_of_column(name: str) -> str:
     """Return the unit of a column of a table of runs; empty where it has none, or none is known."""
     if name in MEASURES:
         return MEASURES[name].unit.replace("²", "2")  # as the units of a history
-    found = QUANTITIES | RESULT_UNITS
-    return found.get(name) or next((unit for key, unit in found.items() if fnmatchcase(name, key)), "")
+    found = described_output(name)
+    return found.si if found else ""
 
 
 def _description_of_column(name: str) -> str:
     if name in MEASURES:
         return MEASURES[name].words or MEASURES[name].label
-    return _descriptions_of_peaks().get(name, "")
-
-
-@cache
-def _descriptions_of_peaks() -> Mapping[str, str]:
-    """Return the first sentence on each parameter of a response, as its docstring has it."""
-    parts = re.findall(r"^(\w+(?:, \w+)*)\n((?: {4}.*\n)+)", getdoc(Response) or "", re.MULTILINE)
-    return {
-        name: re.split(r"(?<=\.) |; ", " ".join(text.split()))[0] for names, text in parts for name in names.split(", ")
-    }
+    found = described_output(name)
+    return found.words if found else ""

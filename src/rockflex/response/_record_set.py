@@ -18,7 +18,7 @@ from rockflex.foundation.units import KN
 from rockflex.foundation.values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._recordings import horizontal_pairs
-from rockflex.response._demands import DEMANDS, ONLY_COMPARED
+from rockflex.response._outputs import DEMANDS_OF_SET, OUTPUTS
 from rockflex.response._quasi_static import static_path
 from rockflex.response._response import Response, history_of
 from rockflex.structure._rocking import RockingProperties
@@ -160,9 +160,9 @@ class RecordSet(HtmlTable, Value):
     def _shown_as(self) -> dict[str, Any]:
         values = zip(map(str, self.statistics.index), self.statistics["design"], strict=True)
         design = {
-            f"{DEMANDS[name].symbol} [{unit}]": float(value) / size
+            f"{OUTPUTS[name].symbol} [{unit}]": float(value) / size
             for name, value in values
-            for size, unit in (DEMANDS[name].unit_in(KN),)
+            for size, unit in (OUTPUTS[name].unit_in(KN),)
         }
         return {
             "model": self.responses[0].model,
@@ -209,10 +209,10 @@ class RecordSet(HtmlTable, Value):
 
         peaks, fallen = self._peaks, self.fallen
         rows: dict[str, dict[str, Any]] = {}
-        for name, demand in DEMANDS.items():
-            if name in ONLY_COMPARED or name not in peaks or peaks[name].isna().any() or not peaks[name].any():
+        for name in DEMANDS_OF_SET:
+            if name not in peaks or peaks[name].isna().any() or not peaks[name].any():
                 continue
-            values, least = peaks[name].to_numpy(float), demand.worst_is_least
+            values, least = peaks[name].to_numpy(float), OUTPUTS[name].worst_is_least
             beyond = np.where(fallen, -math.inf if least else math.inf, values)
             design, reason = design_value(values, fallen, self.rule, worst_is_least=least)
             rows[name] = {

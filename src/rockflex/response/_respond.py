@@ -14,6 +14,7 @@ from rockflex.models._rocking_model import RockingModel
 from rockflex.models._stored_energies import floor_accelerations
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
+from rockflex.response._outputs import outputs_of
 from rockflex.response._peaks import (
     FLOORS,
     GLOBAL,
@@ -178,10 +179,8 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        "max_slip": nothing,
-        "residual_slip": nothing,
+        **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
-        "max_edge_settlement": nothing,
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "nominal_overturning": (right > nominal_right) | (left > nominal_left),

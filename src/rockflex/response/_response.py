@@ -20,6 +20,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History, SampledHistory
+from rockflex.response._outputs import OUTPUTS, outputs_as_docstring
 from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
 
@@ -33,8 +34,8 @@ SI = UnitSystem("SI")
 def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem = SI) -> tuple[str, ...]:
     """Return one text per warning; `peaks` are those of a `Response` by name."""
 
-    def text(name: str, quantity: str) -> str:
-        size, unit = units.of(quantity)
+    def text(name: str) -> str:
+        size, unit = OUTPUTS[name].unit_in(units)
         return f"{peaks[name] / size:.4g} {unit}"
 
     found: list[str] = []
@@ -44,7 +45,7 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "The vertical reaction falls to {force} at {time:.4g} s: {model} pulls the base down there, "
                 "which no ground can. The pivot would lift, and what follows is to be read with care. Give simulate a "
                 "Ground with springs, on which the base can leave the ground.",
-                force=text("min_vertical_reaction", "force"),
+                force=text("min_vertical_reaction"),
                 time=peaks["time_of_min_vertical_reaction"],
                 model=model,
             )
@@ -63,7 +64,7 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "θ reaches {rotation}, {ratio:.3g} times the rotation α at which the static moment vanishes. "
                 "{model} is for small rotations: whether the structure overturns is to be decided by a complete model "
                 "on rigid ground, such as {complete}.",
-                rotation=text("max_rotation", "rotation"),
+                rotation=text("max_rotation"),
                 ratio=peaks["balance_ratio"],
                 model=model,
                 complete=complete_model_label(model),
@@ -158,56 +159,7 @@ class Response(HtmlTable, Value):
     status
         ``"no_uplift"``, ``"rocking"`` (the base was off the ground) or ``"overturned"`` (|θ| reached π/2, which ends
         the run). A run that starts uplifted counts as rocking.
-    max_rotation, time_of_max_rotation
-        Largest |θ| in rad, and its time in s.
-    max_top_displacement, time_of_max_top_displacement
-        Largest |u_top| relative to the rotating base in m, and its time.
-    max_base_moment, time_of_max_base_moment
-        Largest |M_b| of the elastic forces in N m, and its time; zero for a rigid block, which has no elastic forces.
-    max_base_shear, time_of_max_base_shear
-        Largest |V_b| of the elastic forces in N, and its time; zero for a rigid block. With an impact law V_b and M_b
-        are those of landings without rebound: "Forces after an impact" in the theory tells which to design for.
-    max_total_top_displacement, time_of_max_total_top_displacement
-        Largest horizontal displacement of the top relative to the ground in m, including the rotation of the base, and
-        its time: u_top + h_top θ, in the complete models by Eq. 3. NaN if the height of the top is not known.
-    max_horizontal_reaction, time_of_max_horizontal_reaction
-        Largest horizontal ground reaction |ΣF_x| in N (Eq. 21), and its time. Unlike `max_base_shear` it includes the
-        mass of the base, damping forces and the mass of modes left out. Impulses at impacts are not included.
-    min_vertical_reaction, time_of_min_vertical_reaction
-        Smallest vertical force between base and ground in N (Eq. 22 with the sign of the weight corrected), and its
-        time. If it is negative, the model would need the ground to pull the base down; in reality the pivot would lift.
-    max_tendon_force
-        Largest tendon force in N; zero without tendons.
-    tendon_utilisation
-        Largest ratio of force to yield force of any tendon; zero without tendons, NaN if no yield force is given.
-    tendon_yield
-        Whether any tendon reached its yield force.
-    tendon_overload
-        Whether a tendon without `post_yield_ratio`, which stays elastic in the model, carries more than its yield
-        force. The results are not valid then.
-    residual_rotation
-        θ at the end of the run in rad: zero if the base is closed, NaN if it overturned. On springs it is measured from
-        the rotation at rest under gravity. A run that does not settle (``free_vibration="settle"``) may end while the
-        base still rocks: `settled_rotation()` continues it.
-    balance_ratio
-        Largest |θ| over α, the rotation at which the static moment vanishes (`Pivot.balance_rotation`): zero where
-        tendons prevent that. A simplified model beyond 1 has left its range.
-    max_slip, residual_slip
-        Largest displacement |x| of the base along the ground in m, and x at the end of the run, positive to the right;
-        zero unless the ground has a `friction`.
-    max_edge_uplift, max_edge_settlement
-        How far an edge of the base rises above the ground, and how far it sinks into it, in m: on springs measured from
-        the level at which they are unloaded, on rigid ground 2 B |θ| (2 B sin |θ| for large rotations) and zero.
-    n_uplifts, n_impacts
-        Numbers of uplifts and of impacts during the run. An initial rotation does not count as an uplift, so there can
-        be one more impact than uplifts. On springs: how often an edge rises above the level of the unloaded springs,
-        and how often it comes back.
-    nominal_overturning
-        Whether |θ| exceeded 0.7 atan(B/h*_1) (Section 3.3).
-    end_time
-        Time of the last state in s.
-    settled
-        Whether the run ended at rest (``free_vibration="settle"``).
+    {outputs}
     max_element_force
         Largest |F| of each element in N, in the order of `RockingProperties.elements`, shape (E,). A
         friction damper counts with its F_0 once it slides.
@@ -407,6 +359,8 @@ class Response(HtmlTable, Value):
 _SCALARS = (str, float, int, bool)
 KINDS: dict[str, type] = {f.name: f.type for f in fields(Response) if isinstance(f.type, type) and f.type in _SCALARS}
 PEAKS = tuple(KINDS)
+if Response.__doc__:  # not with python -OO
+    Response.__doc__ = Response.__doc__.replace("{outputs}", outputs_as_docstring(PEAKS).replace("\n", "\n    "))
 
 
 def history_of(run: Response, place: int | None = None) -> History:

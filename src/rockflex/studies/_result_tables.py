@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex.foundation.cases import runs_by_case
 from rockflex.foundation.language import translated
+from rockflex.response._outputs import outputs_of
 from rockflex.response._respond import BY_STORY, MAX_OF_STORIES, NAMES
 from rockflex.response._response import Response, complete_model_label, leaves_range
 from rockflex.structure._elements import Tendon
@@ -74,8 +75,8 @@ def tables_to_dataframe(*tables: ArrowTable) -> "pd.DataFrame":
 
 # Every number and flag of a Response, by its name.
 RESULTS: dict[str, type] = {name: Response.__annotations__[name] for name in NAMES if name != "status"}
-OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
-OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
+OF_ELEMENTS = outputs_of("dissipating elements")
+OF_GROUND = outputs_of("sliding", "springs")
 
 
 def result_row(response: Response, suffix: str = "") -> dict[str, Any]:
@@ -107,7 +108,7 @@ def result_columns(
     those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `with_ground`. The
     `story_columns` follow.
     """
-    left_out: tuple[str, ...] = () if with_ground else OF_GROUND
+    left_out = () if with_ground else OF_GROUND
     if not any(map(_has_dissipating_elements, structures)):
         left_out += OF_ELEMENTS
     kinds = {"status": str, **RESULTS}

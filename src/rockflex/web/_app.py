@@ -4,7 +4,7 @@ import asyncio
 import logging
 import math
 import re
-from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
+from collections.abc import AsyncGenerator, Callable, Coroutine, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Thread
@@ -26,6 +26,7 @@ from rockflex.foundation.json import as_json_value
 from rockflex.foundation.language import CATALOGUES, Language, use_language
 from rockflex.foundation.units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
+from rockflex.response._outputs import HISTORY, OUTPUTS, Output
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
@@ -429,8 +430,17 @@ def _answer_about_page() -> dict[str, Any]:
             name: {quantity: UnitSystem(name).of(quantity)._asdict() for quantity in QUANTITIES}
             for name in get_args(SystemName)
         },
+        "outputs": _described(OUTPUTS),
+        "histories": _described(HISTORY),
         "pdf": found_browser() is not None,
         "state": as_json_value(first.model_dump(exclude_none=True)),
+    }
+
+
+def _described(outputs: Mapping[str, Output]) -> dict[str, dict[str, str]]:
+    return {
+        name: {"symbol": each.symbol, "quantity": each.quantity, "words": each.words, "of": each.of}
+        for name, each in outputs.items()
     }
 
 

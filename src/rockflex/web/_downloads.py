@@ -12,8 +12,9 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._suite import Selection
 from rockflex.report.run._report_files import page_as_pdf
 from rockflex.report.run._report_page import run_report_as_html
+from rockflex.response._outputs import COLUMNS, described_output
 from rockflex.response._response import Response
-from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, history_columns
+from rockflex.response._tables import history_columns
 from rockflex.studies._study_kind import KINDS
 from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
@@ -183,12 +184,12 @@ def _history_table(response: Response) -> "pd.DataFrame":
     """Return the columns of a history, and before those of its ground those of the elements, counted from one."""
     import pandas as pd
 
-    units = UNITS_OF_HISTORY | UNITS_OF_GROUND
-    known = history_columns(response.history)
-    heads = {name: units[name.rstrip("0123456789").rstrip("_")] for name in known}
-    columns = {f"{name} ({unit})" if unit else name: known[name] for name, unit in heads.items()}
+    columns = {
+        f"{name} ({found.si})" if (found := described_output(name)) and found.si else name: values
+        for name, values in history_columns(response.history).items()
+    }
     table = pd.DataFrame({"model": response.model} | columns)
-    place = 1 + len(UNITS_OF_HISTORY)
+    place = 1 + len(COLUMNS)
     for k in reversed(range(response.element_force.shape[1])):
         table.insert(place, f"element_{k + 1}_force (N)", response.element_force[:, k])
         table.insert(place, f"element_{k + 1}_elongation (m)", response.element_elongation[:, k])

@@ -12,8 +12,8 @@ from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._report_page import run_report_as_html
-from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
 from rockflex.response._limit_checks import check
+from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS
 from rockflex.response._record_set import RecordSet, checked_rule
 from rockflex.response._response import Response
 from rockflex.studies._prepared_case import PreparedCase
@@ -116,9 +116,9 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         return view
     found = _set_of_job(job, state)
     peaks, statistics = found.peaks, found.statistics
-    units = {str(name): DEMANDS[str(name)].unit_in(UnitSystem(state.units)) for name in statistics.index}
+    units = {str(name): OUTPUTS[str(name)].unit_in(UnitSystem(state.units)) for name in statistics.index}
     view["demands"] = [
-        {"name": name, "symbol": DEMANDS[name].symbol, "unit": unit.name, "size": unit.size,
+        {"name": name, "symbol": OUTPUTS[name].symbol, "unit": unit.name, "size": unit.size,
          "listed": name in DEMANDS_BY_RECORD, "peaks": peaks[name].tolist(), **statistics.loc[name].to_dict()}
         for name, unit in units.items()
     ]  # fmt: skip

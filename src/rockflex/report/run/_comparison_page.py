@@ -26,8 +26,8 @@ from rockflex.report.run._sheet import (
     line_count_of_text,
 )
 from rockflex.response._comparison import STATISTICS, Comparison
-from rockflex.response._demands import DEMANDS
 from rockflex.response._history import History
+from rockflex.response._outputs import OUTPUTS, legend
 from rockflex.structure._rocking import RockingProperties
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
@@ -95,7 +95,7 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
         several=several,
         records=translated("of {n} records: {statistics}", n=total, statistics=statistics) if several else "",
         alternatives=alternatives_table(comparison, units),
-        lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
+        lines=[model_line(comparison), *_report_tables.assumption_lines(report), *_explained_demands(comparison)],
         demands=demand_table(comparison, units),
         record=record,
         warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
@@ -163,15 +163,21 @@ def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     differences = [comparison.differences(each).to_dict("index") for each in shown]
     rows: list[Sequence[ReportCell]] = []
     for demand in map(str, values[0]):
-        known = DEMANDS[demand]
-        unit = units.of(known.quantity, largest=float(comparison.runs[demand].max()))
-        cells = [ReportCell(unit.heading(translated(known.compared_as or known.symbol)))]
+        known = OUTPUTS[demand]
+        unit = known.unit_in(units, largest=float(comparison.runs[demand].max()))
+        cells = [ReportCell(unit.heading(translated(known.symbol)))]
         cells += [
             _joined([value_cell(each[demand][name], demand, unit.size) for each in values]) for name in comparison.names
         ]
         cells += [_joined([difference_cell(each[demand][name]) for each in differences]) for name in others]
         rows.append(cells)
     return ReportTable(heads, rows)
+
+
+def _explained_demands(comparison: Comparison) -> list[tuple[str, str]]:
+    """Return what the demands are that not all runs have, as a headed line; none if there are none."""
+    few = legend(map(str, comparison.demands().index), of_few=True)
+    return [(translated("Demands"), "; ".join(few))] if few else []
 
 
 def _joined(cells: Sequence[ReportCell]) -> ReportCell:

@@ -19,6 +19,7 @@ from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete,
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response._history import History
+from rockflex.response._outputs import OF_MOTION, OUTPUTS, REACTIONS, outputs_of
 from rockflex.response._response import Response
 from rockflex.structure._attachment import PLACE, YieldingStory, element_parameters
 from rockflex.structure._element_law import ElementLaw
@@ -502,7 +503,7 @@ def peak_table(report: ReportedRuns) -> ReportTable:
         status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", run.nominal_overturning)
         share = None if fell else nominal_rotation_share(report.properties, run, history)
         shaken = None if run.floors is None else float(np.max(run.floors.floor_acceleration))
-        values = {"nominal_share": share, "floor_acceleration": shaken}
+        values = {"nominal_share": share, "max_floor_acceleration": shaken}
         cells = [
             value_cell(values[of] if of in values else float(getattr(run, of)), of, unit.size)
             for of, (_, unit) in columns.items()
@@ -513,27 +514,18 @@ def peak_table(report: ReportedRuns) -> ReportTable:
     return ReportTable(heads, rows)
 
 
+def outputs_of_base(report: ReportedRuns) -> tuple[str, ...]:
+    """Return the outputs of a base that can slide, and of one on springs."""
+    layouts = [history.model.layout for history in report.histories]
+    slides, gives = any(each.slip >= 0 for each in layouts), any(each.heave >= 0 for each in layouts)
+    return (outputs_of("sliding") if slides else ()) + (outputs_of("springs") if gives else ())
+
+
 def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, Unit]]:
-    """Return the headings and units of these of the columns, by the names of their values."""
-    units, layouts = report.units, [history.model.layout for history in report.histories]
-    displacement, force = units.of("displacement"), units.of("force")
-    moment = units.of("moment", largest=max(run.max_base_moment for run in report.responses))
-    floors = {"floor_acceleration": ("a_floor", units.of("acceleration"))}
-    slip = {"max_slip": (translated("slip"), displacement), "residual_slip": (translated("slip left"), displacement)}
-    edges = {
-        "max_edge_uplift": (translated("edge up"), displacement),
-        "max_edge_settlement": (translated("edge down"), displacement),
-    }
-    return {
-        "max_rotation": ("θ_max", units.of("rotation")),
-        "nominal_share": ("θ_max/θ_nom", units.of("share")),
-        "max_top_displacement": (translated("u_top relative"), displacement),
-        "max_total_top_displacement": (translated("u_top total"), displacement),
-        "max_base_shear": ("V_b", force),
-        "max_base_moment": ("M_b", moment),
-        **(floors if any(run.floors is not None for run in report.responses) else {}),
-        "max_horizontal_reaction": ("ΣF_x", force),
-        "min_vertical_reaction": ("N_min", force),
-        **(slip if any(layout.slip >= 0 for layout in layouts) else {}),
-        **(edges if any(layout.heave >= 0 for layout in layouts) else {}),
-    }
+    """Return the headings and units of the columns by the names of their values."""
+    units, floors = report.units, any(run.floors is not None for run in report.responses)
+    names = (*OF_MOTION, *(("max_floor_acceleration",) if floors else ()), *REACTIONS, *outputs_of_base(report))
+    moment = max(run.max_base_moment for run in report.responses)
+    columns = {name: (translated(OUTPUTS[name].symbol), OUTPUTS[name].unit_in(units, largest=moment)) for name in names}
+    rotation = columns.pop("max_rotation")
+    return {"max_rotation": rotation, "nominal_share": ("θ_max/θ_nom", units.of("share"))} | columns

@@ -34,6 +34,7 @@ from rockflex.report.run._sheet import (
 )
 from rockflex.response._friction import friction_coefficient
 from rockflex.response._limit_checks import CheckLimits, check
+from rockflex.response._outputs import legend
 from rockflex.response._response import Response, warnings_of_response, warnings_of_run
 from rockflex.structure._structure import structure_warnings
 
@@ -103,6 +104,7 @@ def run_page(
     known = report.properties if structure is None else structure
     record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
     left_out = labels_of_long_runs(report).union(omitted)
+    moves = _report_tables.outputs_of_base(report)
     fell = any(run.status == "overturned" for run in report.responses)
     page = RunPage(
         title=shortened(texts.title or _report_tables.title_text(kind, record.name), MAX_LETTERS["title"]),
@@ -117,6 +119,7 @@ def run_page(
         checks=run_check_table(report, coefficient, left_out),
         legend=[
             *[translated("† The values of a run that overturned include its fall.")] * fell,
+            *["; ".join(legend(moves))] * bool(moves),
             *run_check_legend(report, coefficient, omitted=bool(left_out)),
         ],
         limits=None if limits is None else _limits_of_runs(report, limits, left_out),

@@ -19,8 +19,8 @@ from rockflex.report.run._report_tables import (
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
-from rockflex.response._demands import DEMANDS, DEMANDS_BY_RECORD
 from rockflex.response._limit_checks import CheckLimits, check
+from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS, legend
 from rockflex.response._record_set import RecordSet
 from rockflex.structure._structure import structure_warnings
 
@@ -86,7 +86,8 @@ def set_page(
         fell=translated("† The values of a record that overturns include its fall.") if found.n_overturned else "",
         statistics=_statistics_table(found, units),
         reasons=[
-            translated("For design: {reason}.", reason=each) for each in dict.fromkeys(found.statistics["reason"])
+            *legend(map(str, found.statistics.index), of_few=True),
+            *(translated("For design: {reason}.", reason=each) for each in dict.fromkeys(found.statistics["reason"])),
         ],
         limits=limit_check_table(
             [translated("demand" if found.rule is None else "demand for design")], [checks], units
@@ -98,10 +99,10 @@ def set_page(
 
 
 def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
-    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in found.statistics.index}
+    shown = {name: OUTPUTS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in found.statistics.index}
     pga = units.of("acceleration", "m/s²")
     heads = [(translated("record"), ""), ("", ""), ("PGA", pga.name), (translated("factor"), "")]
-    heads += [(translated(DEMANDS[name].symbol), unit.name) for name, unit in shown.items()]
+    heads += [(translated(OUTPUTS[name].symbol), unit.name) for name, unit in shown.items()]
     rows: list[list[ReportCell]] = []
     for motion, (_, row) in zip(found.motions, found.peaks.iterrows(), strict=True):
         fell = row["status"] == "overturned"
@@ -123,11 +124,11 @@ def _statistics_table(found: RecordSet, units: UnitSystem) -> ReportTable:
     heads += [(translated(words), "") for words in STATISTIC_HEADS.values()]
     rows = [
         [
-            ReportCell(translated(DEMANDS[str(name)].symbol)),
+            ReportCell(translated(OUTPUTS[str(name)].symbol)),
             ReportCell(unit),
             *(value_cell(float(row[each]), each, size) for each in STATISTIC_HEADS),
         ]
         for name, row in found.statistics.iterrows()
-        for size, unit in (DEMANDS[str(name)].unit_in(units),)
+        for size, unit in (OUTPUTS[str(name)].unit_in(units),)
     ]
     return ReportTable(heads, rows)

@@ -6,7 +6,7 @@ import { clone, decode, h, latest, number } from "./dom.js";
 import { box, select, slider } from "./form.js";
 import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
-import { eachNumber, inUnit } from "./units.js";
+import { eachNumber, inUnit, outputInUnit } from "./units.js";
 
 const CURVES = ["t", "rotation", "points", "uplifted", "slip", "heave", "left_edge", "right_edge"];
 const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height" };
@@ -235,13 +235,13 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
   const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
-  const share = fixed ? inUnit(peaks.max_base_moment / fixed, "share", 3) : inUnit(peaks.max_base_moment, "moment", 3);
+  const share = fixed ? inUnit(peaks.max_base_moment / fixed, "share", 3) : outputInUnit("max_base_moment", peaks.max_base_moment, 3);
   return [
-    one("rotation", t("Largest rotation"), fell ? t("overturns") : inUnit(peaks.max_rotation, "rotation", 3),
+    one("rotation", t("Largest rotation"), fell ? t("overturns") : outputInUnit("max_rotation", peaks.max_rotation, 3),
       fell ? t("it falls, and lies at {time}", { time: inUnit(peaks.end_time, "time", 3) }) : t("of the base while it stands on one edge"),
       peaks.max_rotation),
-    one("top", t("Top displacement"), fell ? "–" : inUnit(top, "length", 3),
-      stiff ? t("{top} if its base were held down", { top: inUnit(stiff, "length", 3) }) : t("relative to the ground"), top),
+    one("top", t("Top displacement"), fell ? "–" : outputInUnit("max_top_displacement", top, 3),
+      stiff ? t("{top} if its base were held down", { top: outputInUnit("max_top_displacement", stiff, 3) }) : t("relative to the ground"), top),
     one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
       fixed ? peaks.max_base_moment / fixed : null),
   ];

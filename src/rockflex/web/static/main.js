@@ -161,7 +161,7 @@ async function open() {
 
 // Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
 async function renew(runs) {
-  setUnits(app.about.units, app.state.units);
+  setUnits(app.about, app.state.units);
   const before = Object.entries(made);
   for (const [name, each] of before) {
     each.leave?.();

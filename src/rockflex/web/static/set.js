@@ -8,7 +8,7 @@ import { select } from "./form.js";
 import { assumed, choices, recordsOf, reports, Study } from "./jobs.js";
 import { legend } from "./marks.js";
 import { counted, t } from "./texts.js";
-import { titled, unit } from "./units.js";
+import { explainedOutputs, headed, unit } from "./units.js";
 
 const rules = () => [
   ["ec8", t("EN 1998-1: the mean of 7 and more records, the worst of 3 to 6")],
@@ -24,8 +24,6 @@ const statistics = () => [
   ["design", t("for design"), { color: "c1", width: 4.5 }],
 ];
 
-export const PEAKS_HELP = t("In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.");
-
 // Its form, and its results.
 export function recordSet(app) {
   const choice = () => app.state.record_set;
@@ -35,7 +33,7 @@ export function recordSet(app) {
   const rule = list("rule", t("Value for design"), rules());
   const shown = select("demand", t("Demand drawn"), [], "max_rotation", () => drawPeaks());
   const chart = new Chart({ label: t("Peaks of the records"), xLabel: t("record, as numbered in the table"), xName: t("record"), height: 240, zero: true });
-  const over = new Chart({ label: t("Rotations under all records over time"), yLabel: titled("θ [{unit}]", "rotation"), xLabel: t("time [s]"), xName: "t [s]", height: 200, symmetric: true });
+  const over = new Chart({ label: t("Rotations under all records over time"), yLabel: headed("rotation"), xLabel: t("time [s]"), xName: "t [s]", height: 200, symmetric: true });
   const [keys, overKeys, tables] = [h("div"), h("div"), h("div")];
   const [head, warned] = [h("p", { class: "answer" }), h("div", { class: "warning", role: "alert" })];
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
@@ -65,7 +63,7 @@ export function recordSet(app) {
     drawPeaks();
     drawRotations();
     tables.replaceChildren(
-      h("h2", {}, t("Statistics of {model}", { model: view.model })), scrolled(t("Statistics"), { id: "statistics" }, ofDemands(view)), h("p", { class: "hint" }, symbol(PEAKS_HELP)),
+      h("h2", {}, t("Statistics of {model}", { model: view.model })), scrolled(t("Statistics"), { id: "statistics" }, ofDemands(view)), h("p", { class: "hint" }, symbol(`${explainedOutputs(view.demands.map((each) => each.name))}.`)),
       ...[...new Set(view.demands.map((each) => each.reason))].map((reason) => h("p", { class: "hint" }, t("For design: {reason}.", { reason }))),
       checksTable(view.checks, t("the set")),
       h("h2", {}, t("Records")), scrolled(t("Peaks of each record"), { id: "of-records" }, ofRecords(view)));

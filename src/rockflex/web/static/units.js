@@ -1,12 +1,14 @@
 // The units in which values are shown and typed; the state, links and files are in SI units.
 
 import { number } from "./dom.js";
+import { t } from "./texts.js";
 
 let table = {}; // units of each system by the kind of quantity
 let system = "";
+let [peaks, outputs] = [{}, {}]; // symbol, quantity and words of each peak of a run, and of each quantity over time too
 
-export function setUnits(units, name) {
-  [table, system] = [units, name];
+export function setUnits(about, name) {
+  [table, peaks, outputs, system] = [about.units, about.outputs, { ...about.histories, ...about.outputs }, name];
 }
 
 // The unit of a kind of quantity; the system "kN" has that of `usual`: accelerations are in m/s² there.
@@ -27,6 +29,14 @@ export function unitFor(si, name = "") {
 export const titled = (text, quantity) => text.replace("{unit}", unit(quantity).name);
 
 export const valueIn = (value, quantity, digits) => number(fromSI(value, unit(quantity)), digits);
+
+// Of an output by its name: what heads its column, its value and unit, and what it is.
+export const headed = (name) => titled(`${t(outputs[name].symbol)} [{unit}]`, outputs[name].quantity);
+export const outputUnit = (name) => unit(outputs[name].quantity);
+export const outputIn = (name, value, digits) => valueIn(value, outputs[name].quantity, digits);
+export const outputInUnit = (name, value, digits) => inUnit(value, outputs[name].quantity, digits);
+export const outputsOf = (runs) => Object.keys(peaks).filter((name) => peaks[name].of === runs);
+export const explainedOutputs = (names) => names.map((name) => `${t(outputs[name].symbol)}: ${t(outputs[name].words)}`).join("; ");
 
 export const inUnit = (value, quantity, digits) => `${valueIn(value, quantity, digits)} ${unit(quantity).name}`;
 

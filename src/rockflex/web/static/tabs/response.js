@@ -10,27 +10,27 @@ import { select, slider } from "../form.js";
 import { downloads, reports } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
-import { PEAKS_HELP, recordSet } from "../set.js";
+import { recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { language, t } from "../texts.js";
-import { inUnit, titled, unit, valueIn } from "../units.js";
+import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, outputsOf, titled, valueIn } from "../units.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
 const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
-// Name, axis, kind of quantity, title, height, and the curves of each model where there are several.
+// Name, output, title, height, and the curves of each model where there are several.
 const PANELS = [
-  ["rotation", "θ [{unit}]", "rotation", t("Rotation"), 150],
-  ["slip", t("slip [{unit}]"), "displacement", t("Slip of the base"), 118],
-  ["edges", t("edges [{unit}]"), "displacement", t("Rise of the edges"), 118, EDGES],
-  ["displacement", "", "length", t("Displacement of the top"), 118],
-  ["element", "F [{unit}]", "force", t("Force of an element"), 118, [["element_force", "{model}"]]],
-  ["base_moment", "M_b [{unit}]", "moment", t("Base moment"), 118],
-  ["base_shear", "V_b [{unit}]", "force", t("Base shear"), 134],
+  ["rotation", "rotation", t("Rotation"), 150],
+  ["slip", "slip", t("Slip of the base"), 118],
+  ["edges", "edge_uplift", t("Rise of the edges"), 118, EDGES],
+  ["displacement", "total_top_displacement", t("Displacement of the top"), 118],
+  ["element", "element_force", t("Force of an element"), 118, [["element_force", "{model}"]]],
+  ["base_moment", "base_moment", t("Base moment"), 118],
+  ["base_shear", "base_shear", t("Base shear"), 134],
 ];
 const DISPLACEMENTS = [
-  ["total_top_displacement", t("relative to the ground"), t("u_top total [{unit}]")],
-  ["top_displacement", t("relative to the rotating base"), t("u_top relative [{unit}]")],
+  ["total_top_displacement", t("relative to the ground")],
+  ["top_displacement", t("relative to the rotating base")],
 ];
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
@@ -49,10 +49,10 @@ export default function responseTab(app) {
     (value) => app.change({ scale: value }));
   const options = runs(app, () => view?.suggested_yield);
   const onpick = (time) => player.go(time);
-  const charts = overTime(PANELS.map(([, yLabel, quantity, name, height, parts]) => (
-    { label: t("{quantity} over time", { quantity: name }), yLabel: titled(yLabel, quantity), height, firstOnTop: true, onpick, symmetric: !parts })));
-  const panels = PANELS.map(([key, , , , , parts = [[key, "{model}"]]], i) => [key, charts[i], parts]);
-  const loop = new Loop({ label: t("Base moment over rotation"), yLabel: titled("M_b [{unit}]", "moment"), xLabel: titled("θ [{unit}]", "rotation") });
+  const charts = overTime(PANELS.map(([, output, name, height, parts]) => (
+    { label: t("{quantity} over time", { quantity: name }), yLabel: headed(output), height, firstOnTop: true, onpick, symmetric: !parts })));
+  const panels = PANELS.map(([key, , , , parts = [[key, "{model}"]]], i) => [key, charts[i], parts]);
+  const loop = new Loop({ label: t("Base moment over rotation"), yLabel: headed("base_moment"), xLabel: headed("rotation") });
   const energy = new Energy(() => load());
   const elements = new Elements(app.about, () => {
     energy.focus = elements.model.value;
@@ -137,7 +137,7 @@ export default function responseTab(app) {
     const key = known ? seen.querySelector("select").value : "top_displacement";
     for (const m of [...answer.models, ...ghosts]) m.scaled.displacement = m.scaled[key];
     const [, chart] = panels.find(([name]) => name === "displacement");
-    chart.options.yLabel = titled(DISPLACEMENTS.find(([name]) => name === key)[2], "length");
+    chart.options.yLabel = headed(key);
   }
 
   // The charts follow the time of the animation.
@@ -217,8 +217,8 @@ export default function responseTab(app) {
 
 // The curves of a model in the units of their charts.
 function inUnits(m) {
-  const quantity = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? "length";
-  m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v / unit(quantity(key)).size)]));
+  const output = (key) => PANELS.find(([name, , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[1] ?? key;
+  m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v / outputUnit(output(key)).size)]));
 }
 
 // Intervals of time in which the base of a model is uplifted.
@@ -236,22 +236,12 @@ function uplifts(model) {
   return spans;
 }
 
-// Name, heading, kind of quantity, and whether it may be compared with a fixed base. A displacement relative to the base may
-// not: it lacks the part due to the rotation.
-const PEAKS = [
-  ["max_rotation", "θ_max [{unit}]", "rotation", false],
-  ["max_top_displacement", t("u_top,max relative to the base [{unit}]"), "length", false],
-  ["max_total_top_displacement", t("u_top,max in total [{unit}]"), "length", true],
-  ["max_base_moment", "M_b,max [{unit}]", "moment", true],
-  ["max_base_shear", "V_b,max [{unit}]", "force", true],
-  ["max_horizontal_reaction", "ΣF_x,max [{unit}]", "force", true],
-  ["min_vertical_reaction", "N_min [{unit}]", "force", false],
-];
-const RESIDUAL = ["residual_rotation", t("θ_res [{unit}]"), "rotation"];
-const SLIPS = [["max_slip", t("slip_max [{unit}]"), "displacement"], ["residual_slip", t("slip_end [{unit}]"), "displacement"]];
-const EDGE_PEAKS = [["max_edge_uplift", t("Edge up [{unit}]"), "displacement"], ["max_edge_settlement", t("Edge down [{unit}]"), "displacement"]];
-const ON_SPRINGS = t("Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.");
-const LEFT = t("θ_res: rotation at the end of the run, from that at rest.");
+// The peaks of every model, and those that may be compared with a fixed base. A displacement relative to the base may not: it
+// lacks the part due to the rotation.
+const PEAKS = ["max_rotation", "max_top_displacement", "max_total_top_displacement", "max_base_moment", "max_base_shear",
+  "max_horizontal_reaction", "min_vertical_reaction"];
+const COMPARED = ["max_total_top_displacement", "max_base_moment", "max_base_shear", "max_horizontal_reaction"];
+const RESIDUAL = "residual_rotation";
 const STATUS = { no_uplift: t("no uplift"), rocking: t("rocking") };
 
 const FLOORS = [
@@ -285,11 +275,11 @@ function table(view) {
   const lifting = view.models.filter((m) => m.lifts);
   const standing = lifting.filter((m) => m.status !== "overturned");
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
-  const last = [...(held ? [RESIDUAL] : []), ...(view.ground?.slides ? SLIPS : []), ...(view.ground?.springs.length ? EDGE_PEAKS : [])];
-  const meant = [PEAKS_HELP, ...(held ? [LEFT] : []), ...(view.ground?.springs.length ? [ON_SPRINGS] : []),
+  const last = [...(held ? [RESIDUAL] : []), ...(view.ground?.slides ? outputsOf("sliding") : []),
+    ...(view.ground?.springs.length ? outputsOf("springs") : [])];
+  const meant = [`${explainedOutputs([...PEAKS, ...last])}.`,
     ...(fixed.length ? [t("In brackets: relative to {reference}.", { reference: listed(fixed) })] : [])];
-  const headings = (columns) => columns.map(([, text, quantity]) => titled(text, quantity));
-  const head = [t("Model"), t("Outcome"), ...headings(PEAKS), t("Impacts"), "θ_max/θ_nom", ...headings(last)];
+  const head = [t("Model"), t("Outcome"), ...PEAKS.map(headed), t("Impacts"), "θ_max/θ_nom", ...last.map(headed)];
   return [
     tableOf(head.map(symbol), view.models.map((m) => row(m, view, last))),
     h("p", { class: "hint" }, symbol(meant.join(" "))),
@@ -302,17 +292,17 @@ function row(m, view, last) {
   const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
     ? ` (${inUnit(m.peaks[name] / fixed.peaks[name], "share", 3)})` : "");
   const outcome = fell ? t("overturned at {time}", { time: inUnit(m.peaks.end_time, "time") }) : m.lifts ? STATUS[m.status] : t("fixed base");
-  const cell = ([name, , quantity, comparable]) => {
+  const cell = (name) => {
     const value = m.peaks[name];
     if (value === null || (name === "max_rotation" && fell)) return h("td", { "data-name": name }, "–");
-    const text = valueIn(value, quantity) + (comparable ? share(name) : "");
+    const text = outputIn(name, value) + (COMPARED.includes(name) ? share(name) : "");
     const title = t("at {time}", { time: inUnit(m.peaks[`time_of_${name}`], "time") });
     return h("td", { "data-name": name, "data-value": value, title, class: value < 0 ? "overturned" : null }, text);
   };
   // What friction or a lack of weight can leave; a fixed base has no rotation.
-  const final = ([name, , quantity]) => {
-    const value = name === RESIDUAL[0] && !m.lifts ? null : m.peaks[name];
-    return h("td", { "data-name": name, "data-value": value }, valueIn(value, quantity));
+  const final = (name) => {
+    const value = name === RESIDUAL && !m.lifts ? null : m.peaks[name];
+    return h("td", { "data-name": name, "data-value": value }, outputIn(name, value));
   };
   return h("tr", { "data-model": m.label },
     h("th", { scope: "row" }, m.label),
@@ -335,11 +325,11 @@ function summary(view) {
   const [p, model, springs] = [first.peaks, first.label, view.ground?.springs.length > 0];
   const said = [];
   const time = (value) => inUnit(value, "time", 3);
-  const length = (value) => inUnit(value, "length", 3);
-  const rotation = inUnit(p.max_rotation, "rotation", 3);
+  const shown = (name, of = p) => outputInUnit(name, of[name], 3);
+  const rotation = shown("max_rotation");
   if (!first.lifts) {
     said.push(t("{model}: on a fixed base the top moves by {top} and the base moment reaches {moment}.",
-      { model, top: length(p.max_top_displacement), moment: inUnit(p.max_base_moment, "moment", 3) }));
+      { model, top: shown("max_top_displacement"), moment: shown("max_base_moment") }));
   } else if (first.status === "overturned") {
     said.push(t("{model}: the structure overturns; it lies on its side at {time}.", { model, time: time(p.end_time) }));
   } else if (first.status === "no_uplift") {
@@ -354,13 +344,13 @@ function summary(view) {
         t("{model}: the base rocks with up to {rotation} at {time}, with {count} impacts.", values)];
     said.push(p.n_impacts === 1 ? one : several);
     if (p.nominal_overturning) said.push(t("This exceeds the nominal limit 0.7 atan(B/h*₁), but it did not overturn."));
-    const top = length(p.max_total_top_displacement);
+    const top = shown("max_total_top_displacement");
     if (p.max_total_top_displacement !== null) {
       said.push(fixed ? t("The top moves by up to {top} relative to the ground, and {other} for {reference}.",
-        { top, other: length(fixed.peaks.max_total_top_displacement), reference: named(fixed) })
+        { top, other: shown("max_total_top_displacement", fixed.peaks), reference: named(fixed) })
         : t("The top moves by up to {top} relative to the ground.", { top }));
     }
-    if (p.max_slip > 0) said.push(t("The base slides by up to {slip}.", { slip: inUnit(p.max_slip, "displacement", 3) }));
+    if (p.max_slip > 0) said.push(t("The base slides by up to {slip}.", { slip: shown("max_slip") }));
     if (fixed && fixed.peaks.max_base_moment > 0) {
       const change = p.max_base_moment / fixed.peaks.max_base_moment - 1;
       const values = { share: inUnit(Math.abs(change), "share", 3), reference: named(fixed) };
