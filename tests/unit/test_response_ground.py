@@ -67,18 +67,6 @@ def test_the_residual_rotation_is_measured_from_that_at_rest():
     assert run.settled_rotation() == pytest.approx(0.0, abs=1e-9 * run.max_rotation)
 
 
-def test_residual_rotations_of_earlier_files_are_measured_alike(tmp_path, monkeypatch):
-    run = rf.simulate(LEANING, SHAKEN, "2DOF-S", ground=ON_BED)
-    before = {**run.peaks(), "residual_rotation": float(run.rotation[-1])}
-    del before["balance_ratio"]
-    monkeypatch.setattr(rf.Response, "peaks", lambda _: before)
-    path = run.save(tmp_path / "run")
-    monkeypatch.undo()
-    read = rf.Response.load(path)
-    assert read.residual_rotation == run.residual_rotation
-    assert read.balance_ratio == pytest.approx(run.balance_ratio, rel=1e-12)
-
-
 def test_limits_of_an_eccentric_base_on_springs_are_those_of_the_side_to_which_it_turns():
     p = LEANING.rocking()
     for side in (1, -1):
