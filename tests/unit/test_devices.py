@@ -185,7 +185,7 @@ def test_dashpots_radiate_from_the_area():
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=0.001), "0.0025", "ultimate_strain"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=5.0), "below 1", "ultimate_strain"),
         (lambda: rf.u_plate_fuse(1, 0.1, 0.2, 0.1, "S355"), "below the diameter", "thickness"),
-        (lambda: rf.u_plate_fuse(1, 0.1, 0.01, 0.1, "S355", post_yield_ratio=1.0), "below 1", "post_yield_ratio"),
+        (lambda: rf.u_plate_fuse(1, 0.1, 0.01, 0.1, "S355", post_yield_ratio=1.0), "[0, 1)", "post_yield_ratio"),
         (lambda: rf.Strand(0.0, 2e5, 1.8e5, 2e11), "positive", "area"),
         (lambda: rf.Strand(1e-4, 2e5, 2.8e5, 2e11), "not exceed", "yield_force"),
         (lambda: rf.Steel(5e8, 4e8, 0.05, 2e11), "tensile_strength", "tensile_strength"),

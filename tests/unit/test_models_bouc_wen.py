@@ -26,7 +26,7 @@ RANGE = "gamma must be positive and -gamma < beta <= gamma, but gamma={!r} and b
         ({"yield_displacement": "wide"}, "yield_displacement must be a number in m, but 'wide' was given."),
         ({"post_yield_ratio": 1.0}, "post_yield_ratio must lie in [0, 1), but 1.0 was given. It is the ratio of the"),
         ({"post_yield_ratio": -0.01}, "post_yield_ratio must lie in [0, 1), but -0.01 was given."),
-        ({"post_yield_ratio": math.nan}, "post_yield_ratio must be a finite number, but nan was given."),
+        ({"post_yield_ratio": math.nan}, "post_yield_ratio must lie in [0, 1), but nan was given."),
         (
             {"exponent": 0.99},
             "exponent must be at least 1, but 0.99 was given. 8 gives a sharp yield, 1 a gradual one.",

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.checks import (
-    MOST_MODES,
     checked_damping_ratios,
     checked_instance,
     checked_positive,
     checked_whole_number,
     is_one_of,
 )
+from rockflex.foundation.constants import MOST_MODES
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.shown import shown

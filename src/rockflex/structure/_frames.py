@@ -3,28 +3,26 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import SupportsIndex
+from typing import ClassVar, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
-    MOST_STORIES,
     check_all_positive,
     checked_damping_ratios,
     checked_finite_vector,
-    checked_in_range,
     checked_mode_count,
     checked_positive,
-    checked_whole_number,
     float_array,
     number_of_dimensions,
-    real_or_nan,
 )
+from rockflex.foundation.descriptions import described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.matrices import checked_heights, checked_mass, checked_stiffness
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import FrameSchema
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.structure._analysis import ModalProperties, modal_properties
@@ -306,32 +304,14 @@ def _checked_beam_stiffnesses(values: ArrayLike, n: int) -> Array:
     return array
 
 
+@described
 @dataclass(frozen=True)
-class Frame(AssembledStructure):
+class Frame(FrameSchema, AssembledStructure):
     """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
 
     Columns and beams are inextensible, of uniform stiffness, and the same in all stories; the masses are
     lumped at the floors. The stiffness is scaled to give the specified period, and the base width follows from the
     aspect ratio (Silva & Stojadinović 2024, Section 3.2 and Table 1).
-
-    Attributes
-    ----------
-    n_stories : int
-        Number of stories N, at most 1000.
-    story_height : float
-        Column length L_c in m; floor i is at i L_c.
-    story_mass : float
-        Mass of each floor in kg.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    stiffness_ratio : float
-        ρ = (EI_b/L_b)/(2 EI_c/L_c), from 0 (two cantilevers) to infinity (shear building), both included.
-    period : float
-        First natural period T_1 on a fixed base in s.
-    aspect_ratio : float
-        h*_1/B.
-    damping_ratio : float
-        Damping ratio of every mode in [0, 1).
 
     Raises
     ------
@@ -359,32 +339,10 @@ class Frame(AssembledStructure):
     array([1.   , 0.343, 0.217])
     """
 
-    n_stories: int
-    story_height: float
-    story_mass: float
-    base_mass: float
-    stiffness_ratio: float
-    period: float
-    aspect_ratio: float
-    damping_ratio: float
+    title: ClassVar[str] = "Frame of equal stories"
 
     def __post_init__(self) -> None:
-        vars(self).update(
-            n_stories=checked_whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
-            story_height=checked_positive("story_height", self.story_height, "m"),
-            story_mass=checked_positive("story_mass", self.story_mass, "kg"),
-            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
-            stiffness_ratio=_checked_stiffness_ratio(self.stiffness_ratio),
-            period=checked_positive("period", self.period, "s"),
-            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=checked_in_range(
-                "damping_ratio",
-                self.damping_ratio,
-                0.0,
-                1.0,
-                hint="Give the fraction of critical damping: 2 % is 0.02.",
-            ),
-        )
+        """No value says anything of another one."""
 
     @property
     def height(self) -> float:
@@ -482,14 +440,3 @@ def _unit_frame_rocking(n_stories: int, stiffness_ratio: float) -> RockingProper
     """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
     _, modes = _unit_frame(n_stories, stiffness_ratio)
     return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)
-
-
-def _checked_stiffness_ratio(value: float) -> float:
-    ratio = real_or_nan(value)
-    if not ratio >= 0.0:
-        raise InputError(
-            f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
-            f"but {shown(value)} was given.",
-            field="stiffness_ratio",
-        )
-    return ratio
