@@ -95,7 +95,7 @@ def test_scaled_to_period_and_width():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"stiffness_parameter": -1.0}, "stiffness_parameter must be a zero or positive number in m/m, but -1.0 was"),
+        ({"stiffness_parameter": -1.0}, "stiffness_parameter must be a zero or positive number, but -1.0 was"),
         ({"stiffness_parameter": math.nan}, "stiffness_parameter must be a zero or positive number"),
         ({"mass": 0.0}, "mass must be a positive, finite number in kg, but 0.0 was given"),
         ({"period": -1.0}, "period must be a positive, finite number in s"),

@@ -196,11 +196,9 @@ def described(made: Any = None, *, title: str = "") -> Any:
     """
     if made is None:
         return partial(described, title=title)
-    known = _annotated(get_type_hints(_own(made), include_extras=True))
-    parameters = inspect.signature(made).parameters
-    is_class = isinstance(made, type)
-    entries = {name: each for name, each in known.items() if name in parameters or not is_class}
-    made.__doc__ = _with_entries(made, entries, "Attributes" if is_class else "Parameters")
+    _DESCRIBED.add(made)
+    known, parameters, is_class = described_arguments(made), inspect.signature(made).parameters, isinstance(made, type)
+    made.__doc__ = _with_entries(made, known, "Attributes" if is_class else "Parameters")
     judged = {name: each for name, each in known.items() if each.rule and name in parameters}
     checks = [(name, *_optional(each.judge(name), parameters[name].default is None)) for name, each in judged.items()]
     if is_class and made.__dataclass_params__.init:
@@ -273,7 +271,9 @@ def _with_entries(made: Any, known: dict[str, Described], heading: str) -> str |
     at = len(text) if next_section is None else next_section.start()
     hints = get_type_hints(_own(made))
     kinds = {name: _in_words(hints.get(name)) if heading == "Attributes" else "" for name in known}
-    entries = [f"{name}{kinds[name] and f' : {kinds[name]}'}\n    {each.sentence}" for name, each in known.items()]
+    entries = [
+        f"{name}{kinds[name] and f' : {kinds[name]}'}\n{_WRAPPED.fill(each.sentence)}" for name, each in known.items()
+    ]
     return "\n".join([text[:at].rstrip(), "", heading, "-" * len(heading), *entries, text[at:]])
 
 

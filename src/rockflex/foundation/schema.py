@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Literal, get_args
 
-from rockflex.foundation.constants import MOST_STORIES
+from rockflex.foundation.constants import MOST_MODES, MOST_STORIES
 from rockflex.foundation.descriptions import PLAIN, Described, one_for_each
 
 
@@ -173,16 +173,18 @@ Eccentricity = Annotated[
 
 
 DAMPING_REMEDY = "Give the fraction of critical damping: 2 % is 0.02."
-DampingRatio = Annotated[
-    Any,
-    Described(
-        "the fraction of critical damping",
-        form=one_for_each("mode"),
-        in_file=float | list[float],
-        low=0.0,
-        high=0.99,
-        note="From 0 to below 1.",
-    ),
+DAMPING_RATIOS = Described(
+    "the fraction of critical damping",
+    form=one_for_each("mode"),
+    in_file=float | list[float],
+    low=0.0,
+    high=0.99,
+    note="From 0 to below 1: one number for all modes, or one for each.",
+)
+Height = Annotated[float, Described("the height above the base", "m", rule="positive", low=0.01, high=2000.0)]
+Modes = Annotated[
+    int,
+    Described("how many modes to take", rule="whole", within=(1, MOST_MODES), low=1, high=100, label="Modes"),
 ]
 
 

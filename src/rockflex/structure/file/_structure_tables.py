@@ -1,6 +1,5 @@
 """Tables of the kinds of structures: their keys, and how each is built."""
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
@@ -9,7 +8,7 @@ from pydantic import Field, StringConstraints
 
 from rockflex.foundation.descriptions import PLAIN, WHOLE, Described, one_for_each
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import AspectRatio, BaseMass, Period
+from rockflex.foundation.schema import BaseMass
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
@@ -175,23 +174,7 @@ class StructureTable(TomlTable):
 FrameTable = table_of(Frame, StructureTable, __name__)
 
 
-class LumpedStructureTable(StructureTable):
-    """The arguments of `LumpedStructure`."""
-
-    makes = LumpedStructure
-    title = "Lumped masses"
-
-    masses: Annotated[
-        Vector | Matrix, Described("a list of masses in kg, from the lowest up, or the mass matrix", "kg", form=PLAIN)
-    ]
-    stiffness: Annotated[Matrix, Described("the stiffness matrix in N/m, a list of rows", "N/m", form=PLAIN)]
-    heights: Annotated[
-        Vector,
-        Described("a list of the heights of the masses above the base in m, from the lowest up", "m", form=PLAIN),
-    ]
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
+LumpedStructureTable = table_of(LumpedStructure, StructureTable, __name__)
 
 
 class RockingPropertiesTable(StructureTable):
@@ -234,115 +217,27 @@ class RockingPropertiesTable(StructureTable):
     ] = None
 
 
-class TaperedTowerTable(StructureTable):
-    """The arguments of `TaperedTower`."""
-
-    makes = TaperedTower
-    title = "Tapered tower"
-
-    height: Height
-    base_radius: Annotated[float, Described("the outer radius at the base, half its width", "m", low=1e-2, high=500.0)]
-    top_radius: Annotated[float, Described("the outer radius at the top", "m", low=1e-2, high=500.0)]
-    wall: Annotated[float, Described("the thickness of the wall", "m", low=1e-3, high=100.0)]
-    density: Annotated[float, Described("the density of the material", "kg/m³", low=1.0, high=1e5)]
-    elastic_modulus: Annotated[float, Described("Young's modulus of the material", "N/m²")]
-    damping_ratio: Damping
-    method: Annotated[
-        Literal["ritz", "fe"],
-        Described('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)', form=PLAIN),
-    ] = "ritz"
-    n_modes: Modes = 5
+TaperedTowerTable = table_of(TaperedTower, StructureTable, __name__)
 
 
-class CantileverTable(StructureTable):
-    """The arguments of `CantileverWithTipMass`."""
-
-    makes = CantileverWithTipMass
-    title = "Cantilever with a mass at its tip"
-
-    height: Annotated[float, Described("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
-    tip_mass: Annotated[float, Described("the mass of the body at the tip", "kg")]
-    bending_stiffness: Annotated[
-        float | None, Described("EI of the column (unless a section gives it)", "N m²", label="Bending stiffness")
-    ] = None
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
-    mass_per_length: Annotated[float, Described("the mass of the column per metre", "kg/m")] = 0.0
-    tip_inertia: Annotated[
-        float, Described("the rotary inertia of the body at the tip about its own axis", "kg m²")
-    ] = 0.0
-    n_modes: Annotated[int | None, Described("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = (
-        None
-    )
-    section: SectionKey = None
+class _SectionStructure(StructureTable):
+    """A structure that may have a cross-section."""
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with the section built."""
-        return super().arguments(folder) | section_argument(self.section)
+        return super().arguments(folder) | section_argument(getattr(self, "section", None))
 
 
-class WallFrameTable(StructureTable):
-    """The arguments of `WallFrame`."""
-
-    makes = WallFrame
-    title = "Wall and frame"
-
-    height: Height
-    mass: Annotated[float, Described("the mass of wall and frame together, without the base", "kg")]
-    stiffness_parameter: Annotated[
-        float,
-        Described(
-            "α = H √(GA/EI), a number from 0 (a wall alone: flexure) to inf (a frame alone: shear)",
-            form=PLAIN,
-            low=0.0,
-            high=math.inf,
-        ),
-    ]
-    base_mass: BaseMass
-    period: Period
-    aspect_ratio: AspectRatio
-    damping_ratio: Damping
-    n_modes: Modes = 5
+CantileverTable = table_of(CantileverWithTipMass, _SectionStructure, __name__, {"section": SectionTable | None})
 
 
-class FishBoneTable(StructureTable):
-    """The arguments of `FishBone`."""
-
-    makes = FishBone
-    title = "Frame of unequal stories"
-
-    story_heights: Annotated[
-        Vector,
-        Described("a list of the heights of the stories in m, from the base up", "m", form=PLAIN, low=0.1, high=100.0),
-    ]
-    masses: Annotated[float | Vector, Described("the mass of each floor in kg", "kg", form=one_for_each("story"))]
-    column_stiffness: Annotated[
-        float | Vector, Described("EI of all columns of a story together in N m²", "N m²", form=one_for_each("story"))
-    ]
-    beam_stiffness: Annotated[
-        float | Vector,
-        Described(
-            "the rotational stiffness of the beams of a floor in N m/rad (0: no beams, inf: rigid ones)",
-            "N m/rad",
-            form=one_for_each("story"),
-            high=math.inf,
-        ),
-    ]
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
+WallFrameTable = table_of(WallFrame, StructureTable, __name__)
 
 
-class RigidBlockTable(StructureTable):
-    """The arguments of `rigid_block`."""
+FishBoneTable = table_of(FishBone, StructureTable, __name__)
 
-    makes = rigid_block
-    title = "Rigid block"
 
-    slenderness: Annotated[float, Described("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
-    half_diagonal: Annotated[float, Described("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
-    mass: Annotated[float, Described("the mass, which rotations do not depend on", "kg")] = 1.0
+RigidBlockTable = table_of(rigid_block, StructureTable, __name__)
 
 
 class LumpedMassesTable(TomlTable):
@@ -356,13 +251,9 @@ class LumpedMassesTable(TomlTable):
     ] = None
 
 
-class BeamTable(StructureTable):
+class _BeamStructure(StructureTable):
     """The arguments of `Beam`; a quantity that varies along the height has a value for each height in `z`."""
 
-    makes = Beam
-    title = "Beam, perhaps tapered"
-
-    height: Annotated[float, Described("the height of the beam above the base", "m", low=0.01, high=2000.0)]
     z: Annotated[
         Vector | None,
         Described(
@@ -371,35 +262,6 @@ class BeamTable(StructureTable):
             form=PLAIN,
             label="Heights z",
         ),
-    ] = None
-    mass: Annotated[
-        float | Vector | None,
-        Described("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_EACH_HEIGHT),
-    ] = None
-    bending_stiffness: Annotated[
-        float | Vector | None, Described("EI in N m² (unless a section gives it)", "N m²", form=_EACH_HEIGHT)
-    ] = None
-    section: SectionKey = None
-    shear_stiffness: Annotated[
-        float | Vector | None, Described("GA_s in N (default: no deformation in shear)", "N", form=_EACH_HEIGHT)
-    ] = None
-    rotary_inertia: Annotated[
-        float | Vector | None, Described("ρI in kg m (default: none)", "kg m", form=_EACH_HEIGHT)
-    ] = None
-    lumped_masses: Annotated[LumpedMassesTable | None, Described("bodies", form="a table of {}")] = None
-    half_width: HalfWidth
-    damping_ratio: Damping
-    base_mass: BaseMass = 0.0
-    rotary_in_modes: Annotated[
-        bool, Described("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
-    ] = True
-    method: Annotated[
-        Literal["fe", "ritz"], Described('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
-    ] = "fe"
-    n_modes: Modes = 5
-    n_elements: Annotated[
-        int | None,
-        Described("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -418,9 +280,17 @@ class BeamTable(StructureTable):
                 field="z",
             )
         given |= {name: (z, given[name]) for name in lists}
-        if self.lumped_masses is not None:
+        if given.get("lumped_masses") is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
-        return given | section_argument(self.section)
+        return given | section_argument(getattr(self, "section", None))
+
+
+BeamTable = table_of(
+    Beam,
+    _BeamStructure,
+    __name__,
+    {"section": SectionTable | None, "lumped_masses": LumpedMassesTable | None},
+)
 
 
 class _MatrixFilesTable(StructureTable):

@@ -37,11 +37,13 @@ _FORMS = {
 }
 
 
-def table_of(made: Callable[..., Any], base: type[AnyTable], module: str, **more: Any) -> type[AnyTable]:
+def table_of(
+    made: Callable[..., Any], base: type[AnyTable], module: str, kinds: Mapping[str, Any] | None = None, **more: Any
+) -> type[AnyTable]:
     """Return the table of a class or function: its arguments are the keys, with what is known of them.
 
-    `module` is the name of the calling module, where pickle finds it, and `more` are further fields, as of
-    `pydantic.create_model`.
+    `module` is the name of the calling module, where pickle finds it; `kinds` are the types of arguments that are
+    tables in a file, and `more` are further fields, as of `pydantic.create_model`.
     """
     keys: dict[str, Any] = {}
     parameters = dict(signature(made).parameters)
@@ -54,7 +56,7 @@ def table_of(made: Callable[..., Any], base: type[AnyTable], module: str, **more
             hint, default = hints[name], parameters[name].default
         else:  # of **place: as the element that is returned has it
             hint, default = get_type_hints(returned)[name], signature(returned).parameters[name].default  # pyright: ignore
-        kind = known.in_file or _type_in_file(hint)
+        kind = (kinds or {}).get(name) or known.in_file or _type_in_file(hint)
         form = known.form or _FORMS.get(members_of_annotation(kind)[0], PLAIN)
         keys[name] = Annotated[kind, replace(known, form=form)], ... if default is Parameter.empty else default
     found: Any = create_model(f"{made.__name__}Table", __base__=base, __module__=module, **more, **keys)
