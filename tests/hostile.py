@@ -156,6 +156,26 @@ def structures() -> Calls:
         ),
         "GapBar": (rf.GapBar, {"stiffness": 1e8, "gap": 0.01, "position": 0.2}),
         "MultilinearBar": (rf.MultilinearBar, {"elongations": [0.01], "forces": [1e5], "position": 0.2}),
+        "strand_tendon": (
+            rf.strand_tendon,
+            {"n": 4, "strand": "Y1860S7-15.7", "length": 10.0, "prestress": 0.5, "post_yield_ratio": 0.02,
+             "ultimate_strain": 0.03, "position": 0.2},
+        ),
+        "bar_fuse": (
+            rf.bar_fuse,
+            {"n": 2, "diameter": 0.02, "length": 0.5, "steel": "B500B", "tension_only": False,
+             "ultimate_strain": 0.04, "position": 0.2},
+        ),
+        "u_plate_fuse": (
+            rf.u_plate_fuse,
+            {"n": 2, "width": 0.12, "thickness": 0.012, "diameter": 0.12, "steel": "S355", "post_yield_ratio": 0.02,
+             "position": 0.2},
+        ),
+        "YieldingStories": (
+            rf.YieldingStories,
+            {"structure": rf.Frame(**FRAME | {"stiffness_ratio": math.inf}), "strengths": [3e5, 2e5],
+             "post_yield_ratio": 0.05},
+        ),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),

@@ -92,7 +92,9 @@ def checked_finite(name: str, value: float, unit: str) -> float:
 
 def checked_row(name: str, values: Any) -> tuple[float, ...]:
     """Return at least one finite number of a sequence as a tuple."""
-    numbers = tuple(map(real_or_nan, values)) if isinstance(values, Sequence | np.ndarray) else ()
+    plain = isinstance(values, Sequence) and not isinstance(values, str | bytes)
+    is_row = cast("Array", values).ndim == 1 if isinstance(values, np.ndarray) else plain
+    numbers = tuple(map(real_or_nan, values)) if is_row else ()
     if not numbers or not all(map(math.isfinite, numbers)):
         raise InputError(f"{name} must be a row of numbers, but {shown(values)} was given.", field=name)
     return numbers

@@ -170,6 +170,11 @@ def described_arguments(made: Any) -> dict[str, Described]:
 _DESCRIBED: set[Any] = set()
 
 
+def is_described(made: Any) -> bool:
+    """Return whether a class or function is `described`."""
+    return made in _DESCRIBED
+
+
 def _own(made: Any) -> Any:
     return made if isinstance(made, type) else inspect.unwrap(made)
 
@@ -211,6 +216,7 @@ def described(made: Any = None, *, title: str = "") -> Any:
     else:
         made = _checking_arguments(made, checks)
         made.title = title
+        _DESCRIBED.add(made)
     return made
 
 

@@ -22,21 +22,21 @@ IMPACT = Described(
     metavar="LAW",
     hint="One of simplified (Eq. 25), complete (Eq. 29) and restitution. Default: each model's own law.",
 )
+RESTITUTION = Described(
+    "the rotation velocity after an impact over that before",
+    rule="finite",
+    note="θ'_after / θ'_before, from 0 to 1.",
+    form="a number from 0 to 1",
+    metavar="E",
+    hint="From 0 to 1; with --impact restitution.",
+)
 
 
 class ImpactSchema:
     """An impact law in place of each model's own, and its coefficient."""
 
     impact: Annotated[LawName | None, IMPACT]
-    restitution: Annotated[
-        float | None,
-        Described(
-            "the rotation velocity after an impact over that before",
-            form="a number from 0 to 1",
-            metavar="E",
-            hint="From 0 to 1; with --impact restitution.",
-        ),
-    ] = None
+    restitution: Annotated[float | None, RESTITUTION] = None
 
 
 @dataclass(frozen=True)
