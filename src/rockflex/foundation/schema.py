@@ -291,37 +291,43 @@ class GroundSchema:
     ] = None
 
 
+BREADTH = Described(
+    "the dimension of the base perpendicular to the plane of rocking",
+    "m",
+    rule="positive",
+    low=1e-3,
+    high=1000.0,
+    hint="The base stands on a bed of springs.",
+)
+SUBGRADE_MODULUS = Described(
+    "the modulus of subgrade reaction, pressure over settlement", "N/m³", rule="positive", low=1.0, high=1e14
+)
+SHEAR_MODULUS = Described(
+    "the effective shear modulus of the soil",
+    "N/m²",
+    rule="positive",
+    note="At the strains of the earthquake.",
+    low=1.0,
+    high=1e14,
+    hint="In place of --subgrade-modulus, for a bed with the stiffened ends of ASCE 41.",
+)
+POISSON_RATIO = Described(
+    "the Poisson ratio of the soil",
+    note="From 0 to 0.5.",
+    low=0.0,
+    high=0.5,
+    metavar="NU",
+    hint="With --shear-modulus.",
+)
+
+
 class SpringBedSchema:
     """A bed of springs under the whole base."""
 
-    breadth: Annotated[
-        float,
-        Described(
-            "the dimension of the base perpendicular to the plane of rocking",
-            "m",
-            low=1e-3,
-            high=1000.0,
-            hint="The base stands on a bed of springs.",
-        ),
-    ]
-    subgrade_modulus: Annotated[
-        float | None,
-        Described("the modulus of subgrade reaction, pressure over settlement", "N/m³", low=1.0, high=1e14),
-    ] = None
-    shear_modulus: Annotated[
-        float | None,
-        Described(
-            "the effective shear modulus of the soil",
-            "N/m²",
-            low=1.0,
-            high=1e14,
-            hint="In place of --subgrade-modulus, for a bed with the stiffened ends of ASCE 41.",
-        ),
-    ] = None
-    poisson_ratio: Annotated[
-        float | None,
-        Described("the Poisson ratio of the soil", low=0.0, high=0.5, metavar="NU", hint="With --shear-modulus."),
-    ] = None
+    breadth: Annotated[float, BREADTH]
+    subgrade_modulus: Annotated[float | None, SUBGRADE_MODULUS] = None
+    shear_modulus: Annotated[float | None, SHEAR_MODULUS] = None
+    poisson_ratio: Annotated[float | None, POISSON_RATIO] = None
     heave_damping_ratio: Annotated[
         float | None,
         Described(

@@ -1,11 +1,23 @@
 """The ground of a structure in files and forms: springs, beds of springs, friction, and the inertia of the base."""
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal, NoReturn, cast
 
 from rockflex.foundation.descriptions import PLAIN, WHOLE, Described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.schema import GroundSchema, SpringBedSchema
-from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._ground import (
+    BED_DAMPING,
+    END_RATIO,
+    END_ZONE,
+    NUMBER_OF_SPRINGS,
+    SOIL_DENSITY,
+    Ground,
+    Springs,
+    asce41_bed,
+    gazetas_bed,
+    winkler_bed,
+)
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import ground_under_structure
@@ -45,23 +57,17 @@ class SpringsTable(TomlTable):
 class SpringBedTable(SpringBedSchema, TomlTable):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
 
-    damping: Annotated[
-        float | None, Described("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
-    ] = None
-    n: Annotated[int, Described("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
-    end_zone: Annotated[
-        float | None, Described("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
-    ] = None
-    end_ratio: Annotated[
-        float | None, Described("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
-    ] = None
+    damping: Annotated[float | None, BED_DAMPING] = None
+    n: Annotated[int, replace(NUMBER_OF_SPRINGS, form=WHOLE)] = 20
+    end_zone: Annotated[float | None, END_ZONE] = None
+    end_ratio: Annotated[float | None, END_RATIO] = None
     method: Annotated[
         Literal["asce41", "gazetas"] | None,
         Described('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
     ] = None
     density: Annotated[
         float | None,
-        Described("the density of the soil, for dashpots that radiate, with Gazetas", "kg/m³", low=1.0, high=1e4),
+        replace(SOIL_DENSITY, description=f"{SOIL_DENSITY.description}, with Gazetas"),
     ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
