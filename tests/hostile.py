@@ -93,6 +93,8 @@ WALL = {
     "damping_ratio": 0.02, "n_modes": 2,
 }  # fmt: skip
 BONE = {"story_heights": [3.0, 3.0], "masses": 1e4, "column_stiffness": 1e8, "beam_stiffness": 1e8}
+BED = {"half_width": 2.0, "breadth": 3.0, "n": 10, "eccentricity": 0.1}
+SOIL = {"shear_modulus": 2e7, "poisson_ratio": 0.3}
 BOUC_WEN = {"yield_displacement": 0.05, "post_yield_ratio": 0.01, "gamma": 0.5, "beta": 0.5, "exponent": 8.0}
 SHAKEN = {"free_vibration": 0.0, "bouc_wen": None, "impact": None}
 RUN = {"model": "2DOF-S", "output": "history", "initial": None}
@@ -156,6 +158,32 @@ def structures() -> Calls:
         ),
         "GapBar": (rf.GapBar, {"stiffness": 1e8, "gap": 0.01, "position": 0.2}),
         "MultilinearBar": (rf.MultilinearBar, {"elongations": [0.01], "forces": [1e5], "position": 0.2}),
+        "strand_tendon": (
+            rf.strand_tendon,
+            {"n": 4, "strand": "Y1860S7-15.7", "length": 10.0, "prestress": 0.5, "post_yield_ratio": 0.02,
+             "ultimate_strain": 0.03, "position": 0.2},
+        ),
+        "bar_fuse": (
+            rf.bar_fuse,
+            {"n": 2, "diameter": 0.02, "length": 0.5, "steel": "B500B", "tension_only": False,
+             "ultimate_strain": 0.04, "position": 0.2},
+        ),
+        "u_plate_fuse": (
+            rf.u_plate_fuse,
+            {"n": 2, "width": 0.12, "thickness": 0.012, "diameter": 0.12, "steel": "S355", "post_yield_ratio": 0.02,
+             "position": 0.2},
+        ),
+        "YieldingStories": (
+            rf.YieldingStories,
+            {"structure": rf.Frame(**FRAME | {"stiffness_ratio": math.inf}), "strengths": [3e5, 2e5],
+             "post_yield_ratio": 0.05},
+        ),
+        "winkler_bed": (
+            rf.winkler_bed,
+            BED | {"subgrade_modulus": 4e7, "damping": 1e5, "end_zone": 0.2, "end_ratio": 2.0},
+        ),
+        "asce41_bed": (rf.asce41_bed, BED | SOIL | {"damping": 1e5}),
+        "gazetas_bed": (rf.gazetas_bed, BED | SOIL | {"density": 1900.0, "end_zone": 0.5}),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),

@@ -76,6 +76,8 @@ class _Plain(ast.NodeTransformer):
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         if isinstance(node.value, ast.Name) and node.value.id == "NDArray":
             return ast.Name("ndarray")
+        if isinstance(node.value, ast.Name) and node.value.id == "Annotated" and isinstance(node.slice, ast.Tuple):
+            return self.visit(node.slice.elts[0])  # what is known of an argument stands in the text
         literal = isinstance(node.value, ast.Name) and node.value.id == "Literal"
         return node if literal else self.generic_visit(node)  # type: ignore[return-value]
 

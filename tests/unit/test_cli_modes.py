@@ -166,7 +166,7 @@ def test_both_edges_of_an_eccentric_base(tmp_path):
 
 def test_tendons_to_one_side_make_two_edges(tmp_path):
     path = tmp_path / "held.toml"
-    tendon = "[[tendons]]\nposition = 0.4\ninitial_force = 2e5\nstiffness = 3e6\n"
+    tendon = "[[elements]]\nkind = 'tendon'\nposition = 0.4\ninitial_force = 2e5\nstiffness = 3e6\n"
     path.write_text(ECCENTRIC.replace("eccentricity = -0.15\n", "") + tendon, "utf-8")
     result = invoke(path)
     rows = [line.split() for line in result.stdout.splitlines()]

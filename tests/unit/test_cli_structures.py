@@ -64,7 +64,7 @@ PIER = {
     "half_width": 1.5,
     "damping_ratio": 0.03,
 }
-TENDON = "[[tendons]]\ninitial_force = 2e6\nstiffness = 25e6\n"
+TENDON = "[[elements]]\nkind = 'tendon'\ninitial_force = 2e6\nstiffness = 25e6\n"
 
 
 def test_mass_above_the_base_is_that_of_any_structure(write):
@@ -81,7 +81,7 @@ def test_mass_above_the_base_is_that_of_any_structure(write):
 def test_tendons_are_described(write):
     held = load_structure(write(toml(PIER, "cantilever") + TENDON), NO_FLAGS)
     assert held.kind == "cantilever"
-    assert held.describe()["tendons"] == [{"position": 0.0, "initial_force": 2e6, "stiffness": 25e6}]
+    assert held.describe()["elements"] == [{"kind": "tendon", "position": 0.0, "initial_force": 2e6, "stiffness": 25e6}]
     described = describe_rocking_properties(held.properties)
     assert described["tendons"] == held.properties.tendons
     assert described["prestress"] == 2e6

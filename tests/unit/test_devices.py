@@ -167,10 +167,8 @@ def test_dashpots_radiate_from_the_area():
 @pytest.mark.parametrize(
     ("make", "said", "field"),
     [
-        (lambda: rf.strand_tendon(0, "Y1860S7-15.7", 15.0, 0.5), "whole number", "n"),
         (lambda: rf.strand_tendon(2, "Y1860", 15.0, 0.5), "Y1860S7-15.7", "strand"),
         (lambda: rf.strand_tendon(2, ["Y1860"], 15.0, 0.5), "Strand", "strand"),
-        (lambda: rf.strand_tendon(2, "Y1860S7-15.7", -15.0, 0.5), "positive", "length"),
         (lambda: rf.strand_tendon(2, "Y1860S7-15.7", 15.0, 0.9), "share of F_pk", "prestress"),
         (lambda: rf.strand_tendon(2, "Y1860S7-15.7", 15.0, 0.5, ultimate_strain=0.02), "yields", "ultimate_strain"),
         (
@@ -178,14 +176,11 @@ def test_dashpots_radiate_from_the_area():
             "0.00841",
             "ultimate_strain",
         ),
-        (lambda: rf.bar_fuse(1, 0.0, 0.5, "B500B"), "positive", "diameter"),
         (lambda: rf.bar_fuse(1, 25, 0.5, "B500B"), "in m", "diameter"),
-        (lambda: rf.bar_fuse(1, 0.02, math.inf, "B500B"), "finite", "length"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "steel"), "B500B", "steel"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=0.001), "0.0025", "ultimate_strain"),
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=5.0), "below 1", "ultimate_strain"),
         (lambda: rf.u_plate_fuse(1, 0.1, 0.2, 0.1, "S355"), "below the diameter", "thickness"),
-        (lambda: rf.u_plate_fuse(1, 0.1, 0.01, 0.1, "S355", post_yield_ratio=1.0), "below 1", "post_yield_ratio"),
         (lambda: rf.Strand(0.0, 2e5, 1.8e5, 2e11), "positive", "area"),
         (lambda: rf.Strand(1e-4, 2e5, 2.8e5, 2e11), "not exceed", "yield_force"),
         (lambda: rf.Steel(5e8, 4e8, 0.05, 2e11), "tensile_strength", "tensile_strength"),
@@ -194,9 +189,7 @@ def test_dashpots_radiate_from_the_area():
         (lambda: rf.gazetas_bed(1.0, 1.0, 3e7, 0.6), "0 to 0.5", "poisson_ratio"),
         (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, n=2, end_zone=0.1), "more than two", "end_zone"),
         (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, end_zone=1.0), "[0, 1)", "end_zone"),
-        (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, n=2, eccentricity="left"), "number", "eccentricity"),
         (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, n=2, eccentricity=1.0), "half_width", "eccentricity"),
-        (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, density=0.0), "kg/m³", "density"),
     ],
 )
 def test_bad_values_are_refused(make, said, field):

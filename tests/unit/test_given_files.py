@@ -16,7 +16,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.cli._app import app
 from rockflex.foundation.csv import table_as_csv
-from rockflex.structure.file._structure_entry import read_toml_file
+from rockflex.structure.file._structure_file import read_toml_file
 
 PULSE = rf.ricker_pulse(4.0, 0.6)
 

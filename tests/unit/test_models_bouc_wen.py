@@ -1,6 +1,5 @@
 """The Bouc-Wen spring: its range, its law, and the bound of z."""
 
-import math
 import re
 
 import numpy as np
@@ -20,24 +19,14 @@ RANGE = "gamma must be positive and -gamma < beta <= gamma, but gamma={!r} and b
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"yield_displacement": 0.0}, "yield_displacement must be a positive, finite number in m, but 0.0 was given."),
-        ({"yield_displacement": -0.1}, "yield_displacement must be a positive, finite number in m, but -0.1 was"),
-        ({"yield_displacement": math.inf}, "yield_displacement must be a positive, finite number in m, but inf was"),
-        ({"yield_displacement": "wide"}, "yield_displacement must be a number in m, but 'wide' was given."),
-        ({"post_yield_ratio": 1.0}, "post_yield_ratio must lie in [0, 1), but 1.0 was given. It is the ratio of the"),
-        ({"post_yield_ratio": -0.01}, "post_yield_ratio must lie in [0, 1), but -0.01 was given."),
-        ({"post_yield_ratio": math.nan}, "post_yield_ratio must be a finite number, but nan was given."),
         (
             {"exponent": 0.99},
             "exponent must be at least 1, but 0.99 was given. 8 gives a sharp yield, 1 a gradual one.",
         ),
-        ({"exponent": math.inf}, "exponent must be a finite number, but inf was given."),
         ({"gamma": 0.0, "beta": 0.0}, RANGE.format(0.0, 0.0)),
         ({"gamma": -0.5}, RANGE.format(-0.5, 0.5)),
         ({"gamma": 0.4, "beta": 0.5}, RANGE.format(0.4, 0.5)),
         ({"gamma": 0.5, "beta": -0.5}, RANGE.format(0.5, -0.5) + ": the spring would return more energy than it"),
-        ({"gamma": None}, "gamma must be a finite number, but None was given."),
-        ({"beta": math.nan}, "beta must be a finite number, but nan was given."),
     ],
 )
 def test_springs_that_are_none(changes, text):

@@ -204,12 +204,6 @@ def test_the_laws_of_the_library_are_values():
     [
         ((-0.1,), "The restitution e must lie from 0 to 1, but -0.1 was given."),
         ((1.0000001,), "The restitution e must lie from 0 to 1, but 1.0000001 was given. It is the ratio"),
-        ((math.nan,), "e must be a finite number, but nan was given."),
-        (("half",), "e must be a finite number, but 'half' was given."),
-        ((None,), "e must be a finite number, but None was given."),
-        ((0.5, 0.0), "shortest_excursion must be a positive, finite number in s, but 0.0 was given."),
-        ((0.5, -1e-4), "shortest_excursion must be a positive, finite number in s, but -0.0001 was given."),
-        ((0.5, math.inf), "shortest_excursion must be a positive, finite number in s, but inf was given."),
         ((0.5, "brief"), "shortest_excursion must be a number in s, but 'brief' was given."),
     ],
 )

@@ -187,7 +187,7 @@ def test_a_pdf_has_the_sheet_and_numbered_pages(held, tmp_path):
 
 FILE = """
 name = "Pier"
-tendons = [{initial_force = 8e5, stiffness = 2e7}]
+elements = [{kind = "tendon", initial_force = 8e5, stiffness = 2e7}]
 frame = {n_stories = 2, story_height = 3.0, story_mass = 4e4, base_mass = 4e4, stiffness_ratio = 1.0, \
 period = 0.5, aspect_ratio = 8.0, damping_ratio = 0.02}
 [report]

@@ -142,7 +142,6 @@ REFUSED = [
     ({"method": "ritz", "shapes": rf.cosine_shapes(20.0, 2)}, "shapes must contain at least n_modes = 5 shapes, but"),
     ({"n_elements": 3}, "n_elements must be a whole number from 5 to 10000, but 3 was given"),
     ({"n_modes": 0}, "n_modes must be a whole number from 1 to 200, but 0 was given"),
-    ({"half_width": 0.0}, "half_width must be a positive, finite number in m"),
     ({"damping_ratio": 2.0}, r"damping_ratio must lie in \[0, 1\)"),
 ]  # fmt: skip
 

@@ -54,14 +54,9 @@ def test_simulates():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"wall": 0.0}, "wall must be a positive, finite number in m, but 0.0 was given"),
-        ({"wall": -0.3}, "wall must be a positive, finite number in m, but -0.3 was given"),
         ({"wall": 2.1}, "wall must be at most the smaller radius, top_radius = 2 m, but 2.1 m was given. It is the"),
         ({"wall": 1.1, "base_radius": 1.0}, "wall must be at most the smaller radius, base_radius = 1 m"),
-        ({"density": 0.0}, "density must be a positive, finite number in kg/m³"),
-        ({"elastic_modulus": math.inf}, "elastic_modulus must be a positive, finite number in N/m²"),
         ({"method": "FE"}, 'method must be "fe" or "ritz", but \'FE\' was given'),
-        ({"n_modes": 0}, "n_modes must be a whole number from 1 to 200"),
         ({"damping_ratio": [0.1, 0.2]}, "damping_ratio must be one number, or one for each of the 5 modes"),
     ],
 )

@@ -15,6 +15,7 @@ from rockflex.studies.design._exceedance_fit import design_limit_state
 
 CURVE = {"im": [0.5, 30.0], "rate": [0.1, 2e-5]}
 SPECTRAL = {"level": None, "measure": "sa_t1", "hazard": CURVE}
+TENDON = {"kind": "tendon", "initial_force": 1e5, "stiffness": 1e6}
 SEARCHED = {"tendons": [], "target": 1e-3, "search": {"cost": {"half_width": 1.0}}}
 
 
@@ -152,7 +153,11 @@ def test_a_specification_that_is_wrong(changes, message):
         ({"models": ["3DOF-fixed"]}, "models: 3DOF-fixed has a fixed base, so the base width has no effect."),
         ({"tendons": [{}, {}]}, "tendons: 'no tendon' occurs more than once. Give each once."),
         (
-            {"structures": [{"frame": FRAME, "tendons": [{"initial_force": 1e5, "stiffness": 1e6}]}]},
+            {
+                "structures": [
+                    {"frame": FRAME, "elements": [{"kind": "tendon", "initial_force": 1e5, "stiffness": 1e6}]}
+                ]
+            },
             "The structure has its own tendons, and levels of tendons are given too. Leave out one or the other",
         ),
         ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "B = 9 m, none: limit must be a rotation from 0.0001 rad"),

@@ -194,7 +194,7 @@ def test_records_in_pairs(tmp_path):
 
 
 def test_an_eccentric_structure_of_a_study(tmp_path):
-    tendon = "[[structures.tendons]]\nposition = 0.3\ninitial_force = 1e5\nstiffness = 1e6\n"
+    tendon = "[[structures.elements]]\nkind = 'tendon'\nposition = 0.3\ninitial_force = 1e5\nstiffness = 1e6\n"
     (tmp_path / "plain.toml").write_text(CLOUD, "utf-8")
     (tmp_path / "moved.toml").write_text(CLOUD.replace('name = "one"', 'name = "one"\neccentricity = 0.1') + tendon)
     study, plain = load_study(tmp_path / "moved.toml"), load_study(tmp_path / "plain.toml")
@@ -203,7 +203,7 @@ def test_an_eccentric_structure_of_a_study(tmp_path):
     assert [each.position for each in p.tendons] == [0.3]
     assert study.document()["structures"][0]["eccentricity"] == 0.1
     # A study without it has the document, and so the folder, that it always had.
-    assert plain.document()["structures"][0].keys() == {"name", "frame", "tendons"}
+    assert plain.document()["structures"][0].keys() == {"name", "frame"}
 
 
 def test_elements_of_a_study(tmp_path):

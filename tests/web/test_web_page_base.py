@@ -9,7 +9,7 @@ from test_web_structure import PIER
 import rockflex as rf
 from builders import make_frame
 from rockflex.foundation.json import as_json_value
-from rockflex.structure.file._structure_entry import ELEMENTS
+from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.web._forms import PRESETS
 

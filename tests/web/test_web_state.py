@@ -14,11 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from rockflex.foundation.descriptions import Described
 from rockflex.foundation.json import as_json_value
-from rockflex.foundation.schema import SchemaKey
 from rockflex.foundation.units import QUANTITIES
 from rockflex.motion import MEASURES
-from rockflex.structure.file._structure_entry import ELEMENTS, KINDS
+from rockflex.structure.file._element_tables import ELEMENTS
+from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.web._encoding import envelope_indices
 from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
@@ -258,7 +259,8 @@ def test_an_old_link_still_opens() -> None:
     content |= {"alternatives": [], "head": {}, "limits": {}}
     content["record_set"] = RecordSetChoice.model_validate({}).model_dump()
     (tendon,) = content["structure"]["tendons"]
-    content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
+    del content["structure"]["tendons"]
+    content["structure"] |= {"elements": [{"kind": "tendon", **tendon}]}
     assert as_json_value(state.model_dump(exclude_none=True)) == content
     assert build_page_structure(state.structure).properties.elements == (rf.Tendon(8e5, 1e7, -0.6, 2e6),)
     assert state.structure.eccentricity == 0.1
@@ -321,8 +323,8 @@ def test_what_has_no_balance_says_why() -> None:
 
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
     class Plate(TomlTable):
-        depth: Annotated[float, SchemaKey("how deep, in m below, it lies", "ft")]
-        area: Annotated[float, SchemaKey("its area in m", form="a table of {}, a number in s")]
+        depth: Annotated[float, Described("how deep, in m below, it lies", "ft")]
+        area: Annotated[float, Described("its area in m", form="a table of {}, a number in s")]
 
     depth, area = _form_fields(Plate)
     assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")

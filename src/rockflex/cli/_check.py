@@ -153,7 +153,7 @@ def read_limits(file: Path | None) -> "CheckLimits":
     from dataclasses import fields
 
     from rockflex.response._limit_checks import CheckLimits
-    from rockflex.structure.file._structure_entry import read_toml_file
+    from rockflex.structure.file._structure_file import read_toml_file
 
     content: Mapping[str, Any] = {} if file is None else read_toml_file(file, "limits")
     known = [each.name for each in fields(CheckLimits)]

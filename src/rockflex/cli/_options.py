@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand
 
 from rockflex.cli._console import choose_decimal_comma
+from rockflex.foundation.descriptions import Described, schema_keys
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import Language
 from rockflex.foundation.schema import (
@@ -20,10 +21,8 @@ from rockflex.foundation.schema import (
     ImpactSchema,
     InitialStateSchema,
     ReportKeys,
-    SchemaKey,
     SpringBedSchema,
     command_line_flag,
-    schema_keys,
 )
 from rockflex.foundation.units import SystemName
 
@@ -135,7 +134,7 @@ def naming_flags_in_errors(flags: Mapping[str, str]) -> Generator[None]:
         raise
 
 
-def _option_destination(name: str, key: SchemaKey) -> str:
+def _option_destination(name: str, key: Described) -> str:
     """Return the name of an option, which differs between tables with the same key."""
     return key.flag or name
 
@@ -145,7 +144,7 @@ def _option_type(annotation: Any) -> type:
     return next((kind for kind in (int, float) if kind in kinds), str)
 
 
-def _option_of_schema_key(table: type, name: str, key: SchemaKey, panel: str) -> Any:
+def _option_of_schema_key(table: type, name: str, key: Described, panel: str) -> Any:
     default = getattr(table, name, None)
     words = key.description.removeprefix("the ")
     begins = words[:1].upper() if words[:2].isalpha() else words[:1]  # but not γ or n, which are symbols

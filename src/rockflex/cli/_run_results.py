@@ -12,9 +12,9 @@ from rockflex.cli import _output as output
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
 from rockflex.cli._run_options import lines_about_run_options
 from rockflex.cli._structures import LoadedStructure, elements_table
+from rockflex.foundation.descriptions import schema_keys
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated, use_language
-from rockflex.foundation.schema import schema_keys
 from rockflex.foundation.shown import number_with_noun, shortened
 from rockflex.foundation.units import UnitSystem
 from rockflex.fragility._limit_states import NOMINAL

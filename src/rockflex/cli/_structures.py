@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, FrameFlags, FrameSchema, ReportKeys, SchemaKey
+from rockflex.foundation.schema import FrameFlags, FrameSchema, ReportKeys
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.units import UnitSystem
 from rockflex.structure._attachment import element_parameters
@@ -19,14 +20,10 @@ from rockflex.structure._frames import Frame
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, Restrained, structure_warnings
+from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
-from rockflex.structure.file._structure_entry import (
-    ELEMENTS,
-    KINDS,
-    StructureEntry,
-    build_structure_in_file,
-    read_toml_file,
-)
+from rockflex.structure.file._structure_entry import KINDS, StructureEntry
+from rockflex.structure.file._structure_file import build_structure_in_file, read_toml_file
 from rockflex.structure.file._structure_tables import Built
 from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
 from rockflex.studies.spec import RunOptionKeys
@@ -103,14 +100,14 @@ class ReportHeadTable(ReportKeys, TomlTable):
     """The head of a report, and whether further sheets follow."""
 
     appendix: Annotated[
-        bool, SchemaKey("whether cross-sections and loops of elements follow", form="true or false: {}")
+        bool, Described("whether cross-sections and loops of elements follow", form="true or false: {}")
     ] = False
 
 
 class StructureFile(RunOptionKeys, StructureEntry):
     """A structure file: one structure, optionally a name and elements, and options of ``rockflex run``."""
 
-    report: Annotated[ReportHeadTable | None, SchemaKey("a table", form=PLAIN)] = None
+    report: Annotated[ReportHeadTable | None, Described("a table", form=PLAIN)] = None
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,6 @@ from rockflex.foundation.shown import number_with_noun, shown
 
 T = TypeVar("T")
 
-MOST_STORIES, MOST_MODES = 1000, 200
-"""Limits of stories of a frame and modes of a continuous structure: these take seconds and about 100 MB."""
-
 _NO_NUMBERS = bool, np.bool_, str, bytes, bytearray, complex, np.complexfloating
 _IN_WORDS = {"c": "complex numbers", "S": "texts", "U": "texts", "b": "booleans"}
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
@@ -91,6 +88,16 @@ def checked_finite(name: str, value: float, unit: str) -> float:
             f"{name} must be a finite number{unit and f' in {unit}'}, but {shown(value)} was given.", field=name
         )
     return number
+
+
+def checked_row(name: str, values: Any) -> tuple[float, ...]:
+    """Return at least one finite number of a sequence as a tuple."""
+    plain = isinstance(values, Sequence) and not isinstance(values, str | bytes)
+    is_row = cast("Array", values).ndim == 1 if isinstance(values, np.ndarray) else plain
+    numbers = tuple(map(real_or_nan, values)) if is_row else ()
+    if not numbers or not all(map(math.isfinite, numbers)):
+        raise InputError(f"{name} must be a row of numbers, but {shown(values)} was given.", field=name)
+    return numbers
 
 
 def real_or_nan(value: object) -> float:

@@ -1,67 +1,14 @@
 """The keys that structure files, study files, command-line flags and forms of the page share."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, get_args, get_type_hints
+from typing import Annotated, Literal, get_args
 
-NUMBER, WHOLE, PLAIN = "{}, a number{unit}", "{}, a whole number", "{}"
-
-
-@dataclass(frozen=True)
-class SchemaKey:
-    """The metadata of a field, inside ``Annotated``; its name, type and default are those of the field.
-
-    Attributes
-    ----------
-    description
-        Completes the sentence "it must be ...".
-    unit
-        SI unit, or empty.
-    form
-        How the value is written, with the description in place of ``{}`` and " in <unit>" in place of ``{unit}``.
-    label
-        The name in a form, where it is not the key itself.
-    low, high
-        The smallest and the largest number that the page accepts; None for any of a reasonable size.
-    flag, metavar
-        The option and its placeholder on the command line, where they are not the key and its unit.
-    page
-        What the page says in place of `expected`, where a file may hold what a form cannot.
-    hint
-        What the help of the option says besides the description, the unit and the default.
-    """
-
-    description: str
-    unit: str = ""
-    form: str = NUMBER
-    label: str = ""
-    low: float | None = None
-    high: float | None = None
-    flag: str = ""
-    metavar: str = ""
-    hint: str = ""
-    page: str = ""
-
-    @property
-    def expected(self) -> str:
-        """Return the description of a valid value, and its form in a file."""
-        return self.form.format(self.description, unit=self.unit and f" in {self.unit}")
+from rockflex.foundation.constants import MOST_MODES, MOST_STORIES
+from rockflex.foundation.descriptions import PLAIN, Described, one_for_each
 
 
-def one_for_each(what: str) -> str:
-    """Return the form of a number, or of one for each of many."""
-    return f"{{}}, a number or one for each {what}"
-
-
-def schema_keys(table: type) -> Iterator[tuple[str, Any, SchemaKey]]:
-    """Yield the name, the type and the key of each field of a class whose annotations hold keys."""
-    for name, annotation in get_type_hints(table, include_extras=True).items():
-        kind, key = get_args(annotation)
-        yield name, kind, key
-
-
-def command_line_flag(name: str, key: SchemaKey) -> str:
+def command_line_flag(name: str, key: Described) -> str:
     """Return the option that gives a key on the command line, such as ``--story-height``."""
     return "--" + (key.flag or name).replace("_", "-")
 
@@ -69,11 +16,19 @@ def command_line_flag(name: str, key: SchemaKey) -> str:
 LawName = Literal["simplified", "complete", "restitution"]
 LAWS: tuple[str, ...] = get_args(LawName)
 _QUOTED = [f'"{law}"' for law in LAWS]
-IMPACT = SchemaKey(
+IMPACT = Described(
     "the impact law",
     form=f"{', '.join(_QUOTED[:-1])} or {_QUOTED[-1]}",
     metavar="LAW",
     hint="One of simplified (Eq. 25), complete (Eq. 29) and restitution. Default: each model's own law.",
+)
+RESTITUTION = Described(
+    "the rotation velocity after an impact over that before",
+    rule="finite",
+    note="θ'_after / θ'_before, from 0 to 1.",
+    form="a number from 0 to 1",
+    metavar="E",
+    hint="From 0 to 1; with --impact restitution.",
 )
 
 
@@ -81,25 +36,20 @@ class ImpactSchema:
     """An impact law in place of each model's own, and its coefficient."""
 
     impact: Annotated[LawName | None, IMPACT]
-    restitution: Annotated[
-        float | None,
-        SchemaKey(
-            "the rotation velocity after an impact over that before",
-            form="a number from 0 to 1",
-            metavar="E",
-            hint="From 0 to 1; with --impact restitution.",
-        ),
-    ] = None
+    restitution: Annotated[float | None, RESTITUTION] = None
 
 
+@dataclass(frozen=True)
 class BoucWenSchema:
-    """The arguments of `BoucWen`."""
+    """The fields of `BoucWen`, which flags need before NumPy is loaded."""
 
     yield_displacement: Annotated[
         float,
-        SchemaKey(
+        Described(
             "D_y of the first mode",
             "m",
+            rule="positive",
+            note="Of its coordinate D_1; Γ_1 φ_top,1 D_y at the top.",
             low=1e-6,
             high=100.0,
             metavar="DY",
@@ -108,8 +58,11 @@ class BoucWenSchema:
     ]
     post_yield_ratio: Annotated[
         float,
-        SchemaKey(
+        Described(
             "stiffness after yielding over that before",
+            rule="from 0 to below 1",
+            remedy="It is the ratio of the post-yield to the elastic stiffness; for an elastic structure leave "
+            "bouc_wen out.",
             low=0.0,
             high=0.99,
             label="Post-yield stiffness ratio α",
@@ -118,16 +71,35 @@ class BoucWenSchema:
     ] = 0.01
     gamma: Annotated[
         float,
-        SchemaKey("γ of the hysteresis (Eq. 38)", low=1e-3, high=10.0, label="γ", flag="bw_gamma", metavar="GAMMA"),
+        Described(
+            "γ of the hysteresis (Eq. 38)",
+            rule="finite",
+            note="-γ < β ≤ γ: |z| stays below (γ + β)^(-1/n), and no loop generates energy.",
+            low=1e-3,
+            high=10.0,
+            label="γ",
+            flag="bw_gamma",
+            metavar="GAMMA",
+        ),
     ] = 0.5
     beta: Annotated[
         float,
-        SchemaKey("β of the hysteresis (Eq. 38)", low=-10.0, high=10.0, label="β", flag="bw_beta", metavar="BETA"),
+        Described(
+            "β of the hysteresis (Eq. 38)",
+            rule="finite",
+            low=-10.0,
+            high=10.0,
+            label="β",
+            flag="bw_beta",
+            metavar="BETA",
+        ),
     ] = 0.5
     exponent: Annotated[
         float,
-        SchemaKey(
+        Described(
             "n of the hysteresis (Eq. 38)",
+            rule="finite",
+            note="At least 1; a larger value gives a sharper transition to yielding.",
             form="{}, a number of at least 1",
             low=1.0,
             high=50.0,
@@ -144,7 +116,7 @@ class InitialStateSchema:
 
     initial_rotation: Annotated[
         float | None,
-        SchemaKey(
+        Described(
             "the rotation at t = 0",
             "rad",
             hint="The structure starts at rest there; without a motion it vibrates freely for --free-vibration.",
@@ -156,29 +128,31 @@ class ReportKeys:
     """What the head of a report says."""
 
     title: Annotated[
-        str | None, SchemaKey("the heading of the report, in quotes", form=PLAIN, flag="report_title", metavar="TEXT")
+        str | None, Described("the heading of the report, in quotes", form=PLAIN, flag="report_title", metavar="TEXT")
     ] = None
     project: Annotated[
-        str | None, SchemaKey("the project, in quotes", form=PLAIN, flag="report_project", metavar="TEXT")
+        str | None, Described("the project, in quotes", form=PLAIN, flag="report_project", metavar="TEXT")
     ] = None
     author: Annotated[
-        str | None, SchemaKey("the author, in quotes", form=PLAIN, flag="report_author", metavar="TEXT")
+        str | None, Described("the author, in quotes", form=PLAIN, flag="report_author", metavar="TEXT")
     ] = None
     checker: Annotated[
-        str | None, SchemaKey("who checked it, in quotes", form=PLAIN, flag="report_checker", metavar="TEXT")
+        str | None, Described("who checked it, in quotes", form=PLAIN, flag="report_checker", metavar="TEXT")
     ] = None
     date: Annotated[
         str | None,
-        SchemaKey("the date, in quotes", form=PLAIN, flag="report_date", metavar="TEXT", hint="Default: today."),
+        Described("the date, in quotes", form=PLAIN, flag="report_date", metavar="TEXT", hint="Default: today."),
     ] = None
 
 
-BaseMass = Annotated[float, SchemaKey("the mass of the base", "kg", low=0.0, high=1e12)]
-Period = Annotated[float, SchemaKey("the first period on a fixed base", "s", low=0.01, high=60.0)]
+BaseMass = Annotated[float, Described("the mass of the base", "kg", rule="zero or positive", low=0.0, high=1e12)]
+HalfWidth = Annotated[float, Described("half the width of the base", "m", rule="positive", low=1e-3, high=1000.0)]
+Period = Annotated[float, Described("the first period on a fixed base", "s", rule="positive", low=0.01, high=60.0)]
 AspectRatio = Annotated[
     float,
-    SchemaKey(
+    Described(
         "the effective height over the half width, h*_1/B",
+        rule="positive",
         low=0.1,
         high=100.0,
         label="Slenderness h*₁/B",
@@ -187,7 +161,7 @@ AspectRatio = Annotated[
 ]
 Eccentricity = Annotated[
     float | None,
-    SchemaKey(
+    Described(
         "the distance of the masses to the right of the middle of the base",
         "m",
         low=-1000.0,
@@ -198,20 +172,52 @@ Eccentricity = Annotated[
 ]
 
 
+DAMPING_REMEDY = "Give the fraction of critical damping: 2 % is 0.02."
+DAMPING_RATIOS = Described(
+    "the fraction of critical damping",
+    form=one_for_each("mode"),
+    in_file=float | list[float],
+    low=0.0,
+    high=0.99,
+    note="From 0 to below 1: one number for all modes, or one for each.",
+)
+Height = Annotated[float, Described("the height above the base", "m", rule="positive", low=0.01, high=2000.0)]
+Modes = Annotated[
+    int,
+    Described("how many modes to take", rule="whole", within=(1, MOST_MODES), low=1, high=100, label="Modes"),
+]
+
+
+@dataclass(frozen=True)
 class FrameSchema:
-    """The arguments of `Frame`."""
+    """The fields of `Frame`, which flags need before NumPy is loaded."""
 
     n_stories: Annotated[
         int,
-        SchemaKey("the number of stories", form=WHOLE, low=1, high=200, label="Stories", flag="stories", metavar="N"),
+        Described(
+            "the number of stories",
+            rule="whole",
+            within=(1, MOST_STORIES),
+            low=1,
+            high=200,
+            label="Stories",
+            flag="stories",
+            metavar="N",
+        ),
     ]
-    story_height: Annotated[float, SchemaKey("the height of a story", "m", low=0.1, high=100.0)]
-    story_mass: Annotated[float, SchemaKey("the mass of each floor", "kg", low=1e-3, high=1e12)]
+    story_height: Annotated[
+        float,
+        Described("the height of a story", "m", rule="positive", note="Floor i is at i L_c.", low=0.1, high=100.0),
+    ]
+    story_mass: Annotated[float, Described("the mass of each floor", "kg", rule="positive", low=1e-3, high=1e12)]
     base_mass: BaseMass
     stiffness_ratio: Annotated[
         float,
-        SchemaKey(
+        Described(
             "the ratio of beam to column stiffness",
+            rule="zero, positive or infinite",
+            remedy="0 is for two cantilever columns, float('inf') for a shear building.",
+            note="ρ = (EI_b/L_b)/(2 EI_c/L_c), from 0 (two cantilevers) to infinity (shear building), both included.",
             form="{}, a number from 0 to inf",
             low=0.0,
             high=math.inf,
@@ -223,8 +229,11 @@ class FrameSchema:
     aspect_ratio: AspectRatio
     damping_ratio: Annotated[
         float,
-        SchemaKey(
+        Described(
             "the fraction of critical damping",
+            rule="from 0 to below 1",
+            remedy=DAMPING_REMEDY,
+            note="Of every mode.",
             form="{}, a number such as 0.02",
             low=0.0,
             high=0.99,
@@ -234,6 +243,7 @@ class FrameSchema:
     ]
 
 
+@dataclass(frozen=True)
 class FrameFlags(FrameSchema):
     """A frame and its place on the base, as the command line takes them."""
 
@@ -248,7 +258,7 @@ class GroundSchema:
 
     friction: Annotated[
         float | list[float] | None,
-        SchemaKey(
+        Described(
             "the Coulomb coefficient between base and ground",
             form=_PER_SPRING,
             low=1e-3,
@@ -260,7 +270,7 @@ class GroundSchema:
     ] = None
     base_inertia: Annotated[
         float | None,
-        SchemaKey(
+        Described(
             "the rotary inertia of base and floors about the axis of the masses",
             "kg m²",
             low=1e-6,
@@ -271,7 +281,7 @@ class GroundSchema:
     ] = None
     mat_mass: Annotated[
         float | None,
-        SchemaKey(
+        Described(
             "the mass m of a rigid mat as wide as the base",
             "kg",
             low=1e-3,
@@ -281,40 +291,46 @@ class GroundSchema:
     ] = None
 
 
+BREADTH = Described(
+    "the dimension of the base perpendicular to the plane of rocking",
+    "m",
+    rule="positive",
+    low=1e-3,
+    high=1000.0,
+    hint="The base stands on a bed of springs.",
+)
+SUBGRADE_MODULUS = Described(
+    "the modulus of subgrade reaction, pressure over settlement", "N/m³", rule="positive", low=1.0, high=1e14
+)
+SHEAR_MODULUS = Described(
+    "the effective shear modulus of the soil",
+    "N/m²",
+    rule="positive",
+    note="At the strains of the earthquake.",
+    low=1.0,
+    high=1e14,
+    hint="In place of --subgrade-modulus, for a bed with the stiffened ends of ASCE 41.",
+)
+POISSON_RATIO = Described(
+    "the Poisson ratio of the soil",
+    note="From 0 to 0.5.",
+    low=0.0,
+    high=0.5,
+    metavar="NU",
+    hint="With --shear-modulus.",
+)
+
+
 class SpringBedSchema:
     """A bed of springs under the whole base."""
 
-    breadth: Annotated[
-        float,
-        SchemaKey(
-            "the dimension of the base perpendicular to the plane of rocking",
-            "m",
-            low=1e-3,
-            high=1000.0,
-            hint="The base stands on a bed of springs.",
-        ),
-    ]
-    subgrade_modulus: Annotated[
-        float | None,
-        SchemaKey("the modulus of subgrade reaction, pressure over settlement", "N/m³", low=1.0, high=1e14),
-    ] = None
-    shear_modulus: Annotated[
-        float | None,
-        SchemaKey(
-            "the effective shear modulus of the soil",
-            "N/m²",
-            low=1.0,
-            high=1e14,
-            hint="In place of --subgrade-modulus, for a bed with the stiffened ends of ASCE 41.",
-        ),
-    ] = None
-    poisson_ratio: Annotated[
-        float | None,
-        SchemaKey("the Poisson ratio of the soil", low=0.0, high=0.5, metavar="NU", hint="With --shear-modulus."),
-    ] = None
+    breadth: Annotated[float, BREADTH]
+    subgrade_modulus: Annotated[float | None, SUBGRADE_MODULUS] = None
+    shear_modulus: Annotated[float | None, SHEAR_MODULUS] = None
+    poisson_ratio: Annotated[float | None, POISSON_RATIO] = None
     heave_damping_ratio: Annotated[
         float | None,
-        SchemaKey(
+        Described(
             "the damping of the heave mode over the critical damping",
             low=0.0,
             high=100.0,

@@ -2,27 +2,18 @@
 
 from dataclasses import dataclass
 
-from rockflex.foundation.checks import checked_finite, checked_positive
+from rockflex.foundation.descriptions import described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import BoucWenSchema
 from rockflex.foundation.shown import shown
 
 
+@described
 @dataclass(frozen=True)
-class BoucWen:
+class BoucWen(BoucWenSchema):
     """A yielding superstructure: ω² [α D + D_y (1 - α) z] replaces ω² D.
 
     z' = (D' - γ |D'| z |z|^(n-1) - β D' |z|^n) / D_y, both in contact and while rocking.
-
-    Parameters
-    ----------
-    yield_displacement
-        Yield displacement D_y of the first modal coordinate D_1 in m, positive; Γ_1 φ_top,1 D_y at the top.
-    post_yield_ratio
-        α, ratio of the post-yield to the elastic stiffness, in [0, 1).
-    gamma, beta
-        Shape of the hysteresis, -γ < β ≤ γ: |z| stays below (γ + β)^(-1/n), and no loop generates energy.
-    exponent
-        n, at least 1; a larger value gives a sharper transition to yielding.
 
     Raises
     ------
@@ -41,29 +32,7 @@ class BoucWen:
     '2DOF-S-BW'
     """
 
-    yield_displacement: float
-    post_yield_ratio: float = 0.01
-    gamma: float = 0.5
-    beta: float = 0.5
-    exponent: float = 8.0
-
     def __post_init__(self) -> None:
-        values = {
-            "yield_displacement": checked_positive("yield_displacement", self.yield_displacement, "m"),
-            "post_yield_ratio": checked_finite("post_yield_ratio", self.post_yield_ratio, ""),
-            "gamma": checked_finite("gamma", self.gamma, ""),
-            "beta": checked_finite("beta", self.beta, ""),
-            "exponent": checked_finite("exponent", self.exponent, ""),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
-        if not 0.0 <= self.post_yield_ratio < 1.0:
-            raise InputError(
-                f"post_yield_ratio must lie in [0, 1), but {shown(self.post_yield_ratio)} was given. "
-                "It is the ratio of the post-yield to the elastic stiffness; for an elastic structure leave bouc_wen "
-                "out.",
-                field="post_yield_ratio",
-            )
         if self.exponent < 1.0:
             raise InputError(
                 f"exponent must be at least 1, but {shown(self.exponent)} was given. 8 gives a sharp yield, 1 a "

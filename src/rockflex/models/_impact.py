@@ -6,13 +6,14 @@ zero means full contact; otherwise rocking continues to the side given by its si
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Annotated, Protocol, runtime_checkable
 
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_finite, checked_positive
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import RESTITUTION
 from rockflex.foundation.shown import shown
 from rockflex.structure._rocking import RockingProperties
 
@@ -110,6 +111,7 @@ class VVELComplete:
         return velocity * math.sqrt(1.0 + unseen / moving) if moving > 0.0 else velocity, 0.0
 
 
+@described
 @dataclass(frozen=True)
 class Restitution:
     """The rotation continues on the other side with a fraction e of its velocity.
@@ -117,13 +119,6 @@ class Restitution:
     Every mass keeps its horizontal velocity, D'_after = D'_before + h* (1 - e) θ'_before; e = 0 is `VVELSimplified`.
     Impacts may accumulate. Contact starts, as with e = 0, once the next excursion would be shorter than
     `shortest_excursion`, estimated from the accelerations right after the impact.
-
-    Parameters
-    ----------
-    e
-        θ'_after / θ'_before, from 0 to 1.
-    shortest_excursion
-        Shortest duration of an excursion in s, positive.
 
     Raises
     ------
@@ -140,23 +135,21 @@ class Restitution:
     25
     """
 
-    e: float
-    shortest_excursion: float = 1e-4
+    e: Annotated[float, RESTITUTION]
+    shortest_excursion: Annotated[float, Described("the shortest duration of an excursion", "s", rule="positive")] = (
+        1e-4
+    )
 
     keeps = "the horizontal velocity of every mass, and a share of the rotation"
     loses = "the rest of the rotation's energy"
 
     def __post_init__(self) -> None:
-        e = checked_finite("e", self.e, "")
-        if not 0.0 <= e <= 1.0:
+        if not 0.0 <= self.e <= 1.0:
             raise InputError(
                 f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the ratio of the "
-                "rotation velocities after and before an impact; more than 1 would gain energy."
+                "rotation velocities after and before an impact; more than 1 would gain energy.",
+                field="e",
             )
-        object.__setattr__(self, "e", e)
-        object.__setattr__(
-            self, "shortest_excursion", checked_positive("shortest_excursion", self.shortest_excursion, "s")
-        )
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float

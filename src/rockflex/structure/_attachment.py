@@ -1,9 +1,10 @@
 """Where an element acts: under the base, between floors, or from a height to the ground; and stories that yield."""
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from rockflex.foundation.checks import checked_finite, checked_positive, real_or_nan
+from rockflex.foundation.checks import real_or_nan
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import short_number
@@ -11,8 +12,44 @@ from rockflex.foundation.shown import shown
 from rockflex.foundation.units import Unit, named_unit
 
 PLACE = ("position", "between", "cosine", "height")  # the fields that say where an element acts
+Position = Annotated[
+    float,
+    Described(
+        "the distance to the right of the axis of the masses",
+        "m",
+        rule="finite",
+        note="Unless the base is eccentric, this axis passes through its middle.",
+    ),
+]
+Between = Annotated[
+    tuple[int, int] | None,
+    Described(
+        "the two floors that it connects, in place of a position",
+        form="{}, such as [0, 2]; 0 is the base",
+        note="They count from 1 at the bottom; 0 is the base.",
+    ),
+]
+Cosine = Annotated[
+    float,
+    Described(
+        "the cosine of its inclination between floors or from a height, negative to the other side",
+        rule="finite",
+        note="From -1 to 1 but not zero; positive if the element is stretched as the structure moves to the right.",
+    ),
+]
+TieHeight = Annotated[
+    float | None,
+    Described(
+        "the height of a tie to the ground, in place of a position",
+        "m",
+        rule="positive",
+        label="Tie at height",
+        note="It counts from the base; between floors their displacements are interpolated.",
+    ),
+]
 
 
+@described
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Attachment:
     """What an element connects if it is not between base and ground.
@@ -22,17 +59,6 @@ class Attachment:
     turns the element with the structure. A tie from a height z to the ground has δ = c (u(z) + z θ), and on a base that
     slides c times the slip as well. Its force joins the horizontal forces on floors and ground.
 
-    Attributes
-    ----------
-    between : tuple of int, or None
-        The floors (i, j), from 1 at the bottom; 0 is the base. None for other elements.
-    cosine : float
-        c, from -1 to 1 but not zero: that of the inclination to the horizontal. Its sign is the side on which a tie is
-        anchored: positive if it is stretched as the structure moves to the right.
-    height : float or None
-        Height z in m above the base of a tie to the ground; between floors their displacements are interpolated. None
-        for other elements.
-
     Examples
     --------
     >>> import rockflex as rf
@@ -41,11 +67,15 @@ class Attachment:
     (True, 'floors 0 to 1')
     """
 
+    title: ClassVar[str] = ""  # name in a list; that of the class, if empty
     if TYPE_CHECKING:
         position: float  # a field of every element
-    between: tuple[int, int] | None = None
-    cosine: float = 1.0
-    height: float | None = None
+    between: Between = None
+    cosine: Cosine = 1.0
+    height: TieHeight = None
+
+    def __post_init__(self) -> None:
+        self.check_attachment()
 
     def check_attachment(self) -> None:
         """Check where the element acts.
@@ -63,16 +93,12 @@ class Attachment:
                 "Give one of them.",
                 field=named[0],
             )
-        cosine = checked_finite("cosine", self.cosine, "")
-        if not 0.0 < abs(cosine) <= 1.0 or (not named and cosine != 1.0):
+        if not 0.0 < abs(self.cosine) <= 1.0 or (not named and self.cosine != 1.0):
             raise InputError(
                 f"cosine must be from -1 to 1 and not zero, but {shown(self.cosine)} was given. It is that of the "
                 "inclination of an element between floors or from a height; one under the base has none.",
                 field="cosine",
             )
-        vars(self).update(cosine=cosine)
-        if self.height is not None:
-            vars(self).update(height=checked_positive("height", self.height, "m"))
         if self.between is not None:
             vars(self).update(between=_checked_floors(self.between))
 

@@ -2,21 +2,21 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.checks import (
-    MOST_MODES,
     checked_damping_ratios,
     checked_instance,
-    checked_positive,
     checked_whole_number,
     is_one_of,
 )
+from rockflex.foundation.descriptions import Described, described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import DAMPING_RATIOS, BaseMass, HalfWidth, Modes
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, ritz_modes
@@ -37,6 +37,12 @@ _MAX_ELEMENTS = 10_000
 _MIN_RITZ_SHAPES = 5  # at least: the number in Eq. 36
 
 
+def _along(description: str, unit: str, note: str = "") -> Described:
+    form = one_for_each("height in z")
+    return Described(description, unit, form=form, in_file=float | list[float] | None, note=note)
+
+
+@described
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Beam(AssembledStructure, Value):
     """A cantilever with distributed mass on a rigid base that can rock.
@@ -45,43 +51,6 @@ class Beam(AssembledStructure, Value):
     (n,), or as a table ``(heights, values)`` from the base to the top, linear between its rows; two rows at the same
     height are a jump. The formulas follow Silva & Stojadinović 2024, Table 2, with integrals in place of sums,
     and Eq. 33 for I_θ.
-
-    Attributes
-    ----------
-    height : float
-        Height H in m.
-    mass : number, function or table
-        Mass per unit length m(z) in kg/m, positive. With a section, its mass.
-    bending_stiffness : number, function or table
-        EI(z) in N m², positive. With a section, its stiffness.
-    half_width : float
-        Half-width B of the base in m.
-    damping_ratio : ndarray, shape (n_modes,)
-        Damping ratio of each mode in [0, 1); a single number applies to all modes.
-    shear_stiffness : number, function or table, optional
-        GA_s(z) in N, positive (Timoshenko beam). Default: no shear deformation.
-    rotary_inertia : number, function or table, optional
-        Rotary inertia of the section per unit length, ρI, in kg m, zero or positive. Default: none.
-    section : Section, optional
-        The same section from the base to the top, in place of `mass` and `bending_stiffness`.
-    lumped_masses : LumpedMasses, optional
-        Masses attached along the height.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    rotary_in_modes : bool
-        Whether the rotary inertia is included in the modes too (the consistent choice), or only in I_θ, as in the
-        paper's chimney.
-    method : {"fe", "ritz"}
-        Finite elements or Rayleigh-Ritz. Rayleigh-Ritz neglects shear deformation.
-    n_modes : int
-        Number of modes, at most 200.
-    n_elements : int, optional
-        Number of equal finite elements, from `n_modes` to 10 000; they are subdivided where needed. Default: 1000. Only
-        for "fe".
-    shapes : RitzShapes, optional
-        At least `n_modes` shapes. Default: five shapes of Eq. 36, or `n_modes` if that is more. Only for "ritz".
-    sections : Sections
-        The given properties as profiles along the height; not an argument.
 
     Raises
     ------
@@ -99,41 +68,82 @@ class Beam(AssembledStructure, Value):
     array([0.349, 0.06 , 0.022])
     """
 
-    height: float
-    mass: Along | None = None
-    bending_stiffness: Along | None = None
-    half_width: float
-    damping_ratio: ArrayLike
-    shear_stiffness: Along | None = None
-    rotary_inertia: Along | None = None
-    section: Section | None = None
-    lumped_masses: LumpedMasses | None = None
-    base_mass: float = 0.0
-    rotary_in_modes: bool = True
-    method: Literal["fe", "ritz"] = "fe"
-    n_modes: int = 5
-    n_elements: int | None = None
-    shapes: RitzShapes | None = None
-    sections: BeamSections = field(init=False, repr=False)
+    title: ClassVar[str] = "Beam, perhaps tapered"
+
+    height: Annotated[
+        float, Described("the height of the beam above the base", "m", rule="positive", low=0.01, high=2000.0)
+    ]
+    mass: Annotated[Along | None, _along("the mass per metre in kg/m (unless a section gives it)", "kg/m")] = None
+    bending_stiffness: Annotated[Along | None, _along("EI in N m² (unless a section gives it)", "N m²")] = None
+    half_width: HalfWidth
+    damping_ratio: Annotated[ArrayLike, DAMPING_RATIOS]
+    shear_stiffness: Annotated[
+        Along | None, _along("GA_s in N (default: no deformation in shear)", "N", "Of a Timoshenko beam; positive.")
+    ] = None
+    rotary_inertia: Annotated[
+        Along | None, _along("ρI in kg m (default: none)", "kg m", "Of the section, for each metre; zero or positive.")
+    ] = None
+    section: Annotated[
+        Section | None,
+        Described(
+            "the cross-section in place of bending stiffness and mass",
+            form="a table of {}",
+            note="The same from the base to the top.",
+        ),
+    ] = None
+    lumped_masses: Annotated[
+        LumpedMasses | None, Described("bodies", form="a table of {}", note="They are attached along the height.")
+    ] = None
+    base_mass: BaseMass = 0.0
+    rotary_in_modes: Annotated[
+        bool,
+        Described(
+            "whether the rotary inertia takes part in the modes, or in I_θ only",
+            note="The first is consistent; the second is the paper's chimney.",
+        ),
+    ] = True
+    method: Annotated[
+        Literal["fe", "ritz"],
+        Described(
+            '"fe" (finite elements) or "ritz" (shapes over the whole height)',
+            note="Rayleigh-Ritz neglects shear deformation.",
+        ),
+    ] = "fe"
+    n_modes: Modes = 5
+    n_elements: Annotated[
+        int | None,
+        Described(
+            "how many finite elements to take (default: 1000)",
+            rule="whole",
+            within=(1, _MAX_ELEMENTS),
+            note="Equal, and at least `n_modes`; they are subdivided where needed. Only for the method fe.",
+            low=2,
+            high=2000,
+            label="Elements",
+        ),
+    ] = None
+    shapes: Annotated[
+        RitzShapes | None,
+        Described(
+            "at least `n_modes` shapes",
+            in_file=False,
+            note="Default: five shapes of Eq. 36, or `n_modes` if that is more. Only for the method ritz.",
+        ),
+    ] = None
+    sections: BeamSections = field(init=False, repr=False)  # the given properties as profiles along the height
 
     def __post_init__(self) -> None:
-        height = checked_positive("height", self.height, "m")
         if not isinstance(self.rotary_in_modes, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
                 f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given.",
                 field="rotary_in_modes",
             )
-        n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
-        section = checked_section(self.section)
+        height, section = self.height, checked_section(self.section)
         mass, stiffness = (
             value_from_section(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness")
         )
         vars(self).update(
-            height=height,
-            half_width=checked_positive("half_width", self.half_width, "m"),
-            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
-            n_modes=n_modes,
-            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
+            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, self.n_modes),
             sections=BeamSections(
                 height,
                 beam_profile("mass", mass, height, "kg/m"),

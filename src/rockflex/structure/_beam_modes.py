@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import MOST_MODES, checked_positive, checked_whole_number
+from rockflex.foundation.checks import checked_positive, checked_whole_number
+from rockflex.foundation.constants import MOST_MODES
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.values import Value

@@ -3,12 +3,14 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, SupportsIndex, TypedDict, TypeVar, Unpack
+from typing import Annotated, Any, Literal, SupportsIndex, TypedDict, TypeVar, Unpack
 
-from rockflex.foundation.checks import checked_in_range, checked_positive, checked_whole_number, is_one_of
+from rockflex.foundation.checks import checked_in_range, checked_positive, is_one_of
+from rockflex.foundation.descriptions import PLAIN, Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
-from rockflex.structure._elements import Tendon, YieldingDissipator
+from rockflex.structure._attachment import Between, Cosine, Position, TieHeight
+from rockflex.structure._elements import PostYieldRatio, Tendon, TendonYieldRatio, YieldingDissipator
 
 _MOST = 10_000  # strands, bars or plates of an element
 T = TypeVar("T")
@@ -17,21 +19,19 @@ T = TypeVar("T")
 class Place(TypedDict, total=False):
     """Where an element acts: the arguments of the same names of `Attachment`, and its position."""
 
-    position: float
-    between: tuple[int, int] | None
-    cosine: float
-    height: float | None
+    position: Position
+    between: Between
+    cosine: Cosine
+    height: TieHeight
 
 
-def _checked_ultimate_strain(given: float, yields: float) -> float:
-    strain = checked_positive("ultimate_strain", given, "")
+def _check_ultimate_strain(strain: float, yields: float) -> None:
     if not yields < strain < 1.0:
         raise InputError(
-            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, and below 1, but {shown(given)} was "
+            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, and below 1, but {strain:g} was "
             "given. 5 % is 0.05.",
             field="ultimate_strain",
         )
-    return strain
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,8 @@ class Steel:
         for name in ("yield_strength", "tensile_strength", "modulus"):
             vars(self)[name] = checked_positive(name, getattr(self, name), "N/m²")
         yields = self.yield_strength / self.modulus
-        vars(self)["ultimate_strain"] = _checked_ultimate_strain(self.ultimate_strain, yields)
+        vars(self)["ultimate_strain"] = checked_positive("ultimate_strain", self.ultimate_strain, "")
+        _check_ultimate_strain(self.ultimate_strain, yields)
         if not 0.0 <= self.post_yield_ratio < 1.0:
             raise InputError(
                 f"tensile_strength must be from yield_strength, {self.yield_strength:g} N/m², to below the elastic "
@@ -165,35 +166,57 @@ of these standards.
 """
 
 
+def _names(catalogue: Mapping[str, Any]) -> str:
+    return ", ".join(f'"{name}"' for name in catalogue)
+
+
+SteelOrName = Annotated[
+    str | Steel,
+    Described(
+        f"a steel: {_names(STEELS)}",
+        form=PLAIN,
+        in_file=Literal[tuple(STEELS)],
+        note="A name in `STEELS`, or a `Steel`, with mean values for instance.",
+    ),
+]
+
+
+@described(title="Tendon of strands")
 def strand_tendon(
-    n: SupportsIndex,
-    strand: str | Strand,
-    length: float,
-    prestress: float,
+    n: Annotated[SupportsIndex, Described("the number of strands", rule="whole", within=(1, _MOST), low=1, high=_MOST)],
+    strand: Annotated[
+        str | Strand,
+        Described(
+            f"a strand: {_names(STRANDS)}",
+            form=PLAIN,
+            in_file=Literal[tuple(STRANDS)],
+            note="A name in `STRANDS`, or a `Strand`.",
+        ),
+    ],
+    length: Annotated[float, Described("the free length", "m", rule="positive", note="L, between the anchorages.")],
+    prestress: Annotated[
+        float,
+        Described(
+            "the force at rest over the breaking force",
+            low=0.0,
+            high=0.9,
+            note="p, after all losses; from 0 to F_p0,1k/F_pk.",
+        ),
+    ],
     *,
-    post_yield_ratio: float | None = None,
-    ultimate_strain: float | None = None,
+    post_yield_ratio: TendonYieldRatio = None,
+    ultimate_strain: Annotated[
+        float | None,
+        Described(
+            "the strain at which a tendon that yields breaks",
+            rule="positive",
+            note="With that of the prestress. Strands alone reach 3.5 % (EN 10138-3, ASTM A416), in wedges less. "
+            "Default: it never breaks.",
+        ),
+    ] = None,
     **place: Unpack[Place],
 ) -> Tendon:
     """Return a tendon of seven-wire strands: k = n E A/L, F_0 = n p F_pk, F_y = n F_p0,1k.
-
-    Parameters
-    ----------
-    n
-        Number of strands, from 1.
-    strand
-        A name in `STRANDS`, such as ``"Y1860S7-15.7"``, or a `Strand`.
-    length
-        Free length L in m between the anchorages.
-    prestress
-        p: force while the base stands on the ground, after all losses, over the breaking force; from 0 to F_p0,1k/F_pk.
-    post_yield_ratio
-        α, with which the tendon yields. Default: it stays elastic, and its largest force is compared with F_y.
-    ultimate_strain
-        Strain, with that of the prestress, at which a tendon that yields breaks. Strands alone reach 3.5 %
-        (EN 10138-3, ASTM A416), in wedges less. Default: it never breaks.
-    place
-        ``position``, or ``between`` or ``height`` with a ``cosine``, as in `Tendon`.
 
     Raises
     ------
@@ -207,8 +230,7 @@ def strand_tendon(
     >>> tendon.initial_force, round(tendon.stiffness), tendon.yield_force
     (1674000.0, 23400000, 2952000.0)
     """
-    count, one = checked_whole_number("n", n, 1, _MOST), _named("strand", strand, Strand, STRANDS)
-    L = checked_positive("length", length, "m")
+    count, one, L = int(n), _named("strand", strand, Strand, STRANDS), length
     most = one.yield_force / one.breaking_force
     p = checked_in_range(
         "prestress", prestress, 0.0, most, closed=True, hint="It is a share of F_pk; the end is F_p0,1k/F_pk."
@@ -220,8 +242,8 @@ def strand_tendon(
                 "ultimate_strain is for a tendon that yields. Give post_yield_ratio as well, or leave it out.",
                 field="ultimate_strain",
             )
-        strain = _checked_ultimate_strain(ultimate_strain, one.yield_force / axial)
-        rupture = (strain - p * one.breaking_force / axial) * L
+        _check_ultimate_strain(ultimate_strain, one.yield_force / axial)
+        rupture = (ultimate_strain - p * one.breaking_force / axial) * L
     return Tendon(
         p * count * one.breaking_force,
         count * one.modulus * one.area / L,
@@ -232,35 +254,38 @@ def strand_tendon(
     )
 
 
+@described(title="Fuse of steel bars")
 def bar_fuse(
-    n: SupportsIndex,
-    diameter: float,
-    length: float,
-    steel: str | Steel,
+    n: Annotated[SupportsIndex, Described("the number of bars", rule="whole", within=(1, _MOST), low=1, high=_MOST)],
+    diameter: Annotated[
+        float, Described("the diameter of a bar where it yields", "m", rule="positive", note="d, below the length.")
+    ],
+    length: Annotated[
+        float, Described("the length that yields", "m", rule="positive", note="L, turned down or unbonded.")
+    ],
+    steel: SteelOrName,
     *,
-    tension_only: bool = False,
-    ultimate_strain: float | None = None,
+    tension_only: Annotated[
+        bool,
+        Described(
+            "whether the bars cannot push",
+            rule="flag",
+            note="They buckle, or are unhooked. Default: they are restrained, as in a grouted tube.",
+        ),
+    ] = False,
+    ultimate_strain: Annotated[
+        float | None,
+        Described(
+            "the strain at which the bars break (default: that of the steel)",
+            rule="positive",
+            note="Many cycles break them earlier.",
+        ),
+    ] = None,
     **place: Unpack[Place],
 ) -> YieldingDissipator:
     """Return a fuse of round bars of mild steel: k = n E A/L, F_y = n f_y A, with A = π d²/4.
 
     It hardens along the line from yielding to (ε_u, f_u), and breaks at the elongation ε_u L.
-
-    Parameters
-    ----------
-    n
-        Number of bars side by side, from 1.
-    diameter, length
-        d and L in m of the part that yields, turned down or unbonded; d below L.
-    steel
-        A name in `STEELS`, such as ``"B500B"``, or a `Steel`, with mean values for instance.
-    tension_only
-        Whether the bars buckle when they are pushed, or are unhooked. Default: they are restrained, as in a grouted
-        tube.
-    ultimate_strain
-        Strain at which the bars break. Default: that of the steel. Many cycles break them earlier.
-    place
-        ``position``, or ``between`` or ``height`` with a ``cosine``, as in `YieldingDissipator`.
 
     Raises
     ------
@@ -274,8 +299,7 @@ def bar_fuse(
     >>> round(fuse.yield_force), round(fuse.stiffness), round(fuse.post_yield_ratio, 4), fuse.rupture_elongation
     (314159, 251327412, 0.0042, 0.025)
     """
-    count, metal = checked_whole_number("n", n, 1, _MOST), _named("steel", steel, Steel, STEELS)
-    d, L = checked_positive("diameter", diameter, "m"), checked_positive("length", length, "m")
+    count, metal, d, L = int(n), _named("steel", steel, Steel, STEELS), diameter, length
     if not d < L:
         raise InputError(
             f"diameter must be below the length, {L:g} m, but {shown(diameter)} was given. Both are in m.",
@@ -284,7 +308,8 @@ def bar_fuse(
     area = count * math.pi / 4.0 * d**2
     yields, breaks = metal.yield_strength / metal.modulus, metal.ultimate_strain
     if ultimate_strain is not None:
-        breaks = _checked_ultimate_strain(ultimate_strain, yields)
+        _check_ultimate_strain(ultimate_strain, yields)
+        breaks = ultimate_strain
     return YieldingDissipator(
         metal.modulus * area / L,
         metal.yield_strength * area,
@@ -295,14 +320,20 @@ def bar_fuse(
     )
 
 
+@described(title="U-shaped flexural plates")
 def u_plate_fuse(
-    n: SupportsIndex,
-    width: float,
-    thickness: float,
-    diameter: float,
-    steel: str | Steel,
+    n: Annotated[SupportsIndex, Described("the number of plates", rule="whole", within=(1, _MOST), low=1, high=_MOST)],
+    width: Annotated[float, Described("the width of a plate", "m", rule="positive", note="b.")],
+    thickness: Annotated[
+        float, Described("the thickness of a plate", "m", rule="positive", note="t, below the diameter.")
+    ],
+    diameter: Annotated[
+        float,
+        Described("the diameter of the bend, between the middles of the legs", "m", rule="positive", note="D."),
+    ],
+    steel: SteelOrName,
     *,
-    post_yield_ratio: float = 0.0,
+    post_yield_ratio: PostYieldRatio = 0.0,
     **place: Unpack[Place],
 ) -> YieldingDissipator:
     """Return U-shaped flexural plates, which roll between two surfaces that move along each other.
@@ -314,19 +345,6 @@ def u_plate_fuse(
     a bilinear law has in its place. The strain of the plate, about t/D, does not grow with the stroke; how many cycles
     it bears, and where the legs end, is not modelled. The formulas are checked by mechanics, not against the text of
     the papers.
-
-    Parameters
-    ----------
-    n
-        Number of plates, from 1.
-    width, thickness, diameter
-        b and t of the plate, and D of its bend between the middles of the legs, in m; t below D.
-    steel
-        A name in `STEELS`, such as ``"S355"``, or a `Steel`.
-    post_yield_ratio
-        α, from 0 to below 1.
-    place
-        ``position``, or ``between`` or ``height`` with a ``cosine``, as in `YieldingDissipator`.
 
     Raises
     ------
@@ -340,9 +358,8 @@ def u_plate_fuse(
     >>> round(fuse.yield_force), round(fuse.stiffness)
     (102240, 19013711)
     """
-    count, metal = checked_whole_number("n", n, 1, _MOST), _named("steel", steel, Steel, STEELS)
-    b, t = checked_positive("width", width, "m"), checked_positive("thickness", thickness, "m")
-    D = checked_positive("diameter", diameter, "m")
+    count, metal = int(n), _named("steel", steel, Steel, STEELS)
+    b, t, D = width, thickness, diameter
     if not t < D:
         raise InputError(
             f"thickness must be below the diameter of the bend, {D:g} m, but {t:g} m was given.", field="thickness"

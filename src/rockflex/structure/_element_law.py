@@ -138,7 +138,6 @@ class ElementLaw(Attachment, ABC):
     [0.056, 0.0389]
     """
 
-    title: ClassVar[str] = ""  # name in a list; that of the class, if empty
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # every class that is derived is a dataclass
 

@@ -3,15 +3,31 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
-from rockflex.foundation.checks import checked_finite, checked_instance, checked_positive, real_or_nan
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
-from rockflex.structure._attachment import PLACE, Attachment, element_parameters
+from rockflex.structure._attachment import PLACE, Attachment, Position, element_parameters
 from rockflex.structure._element_law import ElementLaw
 
+_RATIO_REMEDY = "It is the stiffness after yielding over the elastic stiffness: 2 % is 0.02."
+PostYieldRatio = Annotated[
+    float,
+    Described("the stiffness after yielding over the elastic one", rule="from 0 to below 1", remedy=_RATIO_REMEDY),
+]
+TendonYieldRatio = Annotated[
+    float | None,
+    Described(
+        "the stiffness after yielding over the elastic one (default: the tendon stays elastic)",
+        rule="from 0 to below 1",
+        remedy=_RATIO_REMEDY,
+        note="A tendon that yields keeps its plastic stretch, loses prestress and becomes slack at zero force.",
+    ),
+]
 
+
+@described
 @dataclass(frozen=True, repr=False)
 class Tendon(Attachment):
     """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
@@ -21,26 +37,6 @@ class Tendon(Attachment):
     increases linearly from the initial force (Vassiliou & Makris 2015, doi 10.1061/(ASCE)EM.1943-7889.0000953). It
     pulls and never pushes: it goes slack at zero force. On rigid ground no rotation makes an elastic tendon between the
     edges of the base slack; on springs the base can sink and shorten it.
-
-    Attributes
-    ----------
-    initial_force : float
-        Force in N while the base is in contact with the ground; zero or positive.
-    stiffness : float
-        Axial stiffness EA/L over the unbonded length in N/m; zero or positive.
-    position : float
-        Distance in m from the axis of the masses, positive to the right. Unless the base is eccentric, this axis passes
-        through its middle.
-    yield_force : float or None
-        In N, positive. Without `post_yield_ratio` the tendon stays elastic, and its largest force is compared with it.
-    post_yield_ratio : float or None
-        α in [0, 1): the tendon yields at `yield_force`, with the stiffness α k from there on. It keeps its plastic
-        stretch, loses prestress and becomes slack at zero force. Default: it stays elastic.
-    rupture_elongation : float or None
-        Elongation in m, from the base in contact, at which a yielding tendon breaks for good. Default: it never does.
-    between, cosine, height
-        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
-        direction; see `Attachment`.
 
     Raises
     ------
@@ -55,37 +51,47 @@ class Tendon(Attachment):
     0.556
     """
 
-    initial_force: float
-    stiffness: float
-    position: float = 0.0
-    yield_force: float | None = None
-    post_yield_ratio: float | None = None
-    rupture_elongation: float | None = None
+    title: ClassVar[str] = "Tendon"
+
+    initial_force: Annotated[
+        float, Described("the force while the base stands on the ground", "N", rule="zero or positive")
+    ]
+    stiffness: Annotated[float, Described("EA/L over the unbonded length", "N/m", rule="zero or positive")]
+    position: Position = 0.0
+    yield_force: Annotated[
+        float | None,
+        Described(
+            "the force at which the tendon yields",
+            "N",
+            rule="positive",
+            note="Without `post_yield_ratio` the tendon stays elastic, and its largest force is compared with it.",
+        ),
+    ] = None
+    post_yield_ratio: TendonYieldRatio = None
+    rupture_elongation: Annotated[
+        float | None,
+        Described(
+            "the elongation at which a tendon that yields breaks",
+            "m",
+            rule="positive",
+            note="For good, counted from the base in contact. Default: it never does.",
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
-        vars(self).update(
-            initial_force=checked_positive("initial_force", self.initial_force, "N", zero=True),
-            stiffness=checked_positive("stiffness", self.stiffness, "N/m", zero=True),
-            position=checked_finite("position", self.position, "m"),
-        )
         self.check_attachment()
-        if self.yield_force is not None:
-            limit = checked_positive("yield_force", self.yield_force, "N")
-            vars(self).update(yield_force=limit)
-            if self.initial_force > limit:
-                raise InputError(
-                    f"initial_force must not exceed yield_force, {limit:g} N, but {self.initial_force:g} N was given. "
-                    "A tendon that has yielded is not elastic; check the units too.",
-                    field="initial_force",
-                )
-        if self.post_yield_ratio is not None:
-            vars(self).update(post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio))
-            if self.yield_force is None or self.stiffness == 0.0:
-                raise InputError(
-                    "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
-                    f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
-                    field="yield_force" if self.yield_force is None else "stiffness",
-                )
+        if self.yield_force is not None and self.initial_force > self.yield_force:
+            raise InputError(
+                f"initial_force must not exceed yield_force, {self.yield_force:g} N, but {self.initial_force:g} N was "
+                "given. A tendon that has yielded is not elastic; check the units too.",
+                field="initial_force",
+            )
+        if self.post_yield_ratio is not None and (self.yield_force is None or self.stiffness == 0.0):
+            raise InputError(
+                "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
+                f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
+                field="yield_force" if self.yield_force is None else "stiffness",
+            )
         if self.rupture_elongation is not None:
             if self.yield_force is None or self.post_yield_ratio is None:
                 raise InputError(
@@ -93,47 +99,19 @@ class Tendon(Attachment):
                     field="rupture_elongation",
                 )
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
-            vars(self).update(rupture_elongation=checked_rupture_elongation(self.rupture_elongation, yields_at))
+            _check_rupture_elongation(self.rupture_elongation, yields_at)
 
 
-def checked_post_yield_ratio(value: float) -> float:
-    """Return a post-yield stiffness ratio.
-
-    Raises
-    ------
-    InputError
-        If it is not in [0, 1).
-    """
-    ratio = real_or_nan(value)
-    if not 0.0 <= ratio < 1.0:
-        raise InputError(
-            f"post_yield_ratio must be from 0 to below 1, but {shown(value)} was given. It is the stiffness after "
-            "yielding over the elastic stiffness: 2 % is 0.02.",
-            field="post_yield_ratio",
-        )
-    return ratio
-
-
-def checked_rupture_elongation(value: float | None, yields_at: float) -> float | None:
-    """Return the elongation at rupture in m.
-
-    Raises
-    ------
-    InputError
-        If it is not beyond the elongation `yields_at`, in m, at which yielding starts.
-    """
-    if value is None:
-        return None
-    limit = checked_positive("rupture_elongation", value, "m")
+def _check_rupture_elongation(limit: float, yields_at: float) -> None:
     if limit <= yields_at:
         raise InputError(
             f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
             "Check the units: stiffness is in N/m, forces are in N and elongations in m.",
             field="rupture_elongation",
         )
-    return limit
 
 
+@described
 @dataclass(frozen=True, repr=False)
 class YieldingDissipator(Attachment):
     """A fuse between the base and the ground that yields in tension and compression, with kinematic hardening.
@@ -142,24 +120,6 @@ class YieldingDissipator(Attachment):
     r |θ|, as it is held on both sides of the joint and bends freely. Its force is F = α k δ + (1 - α) z, where z
     follows k δ and is limited to ± F_y. The first yield is therefore at F = F_y. A fuse that has yielded keeps a force
     while the base is closed, which shifts the moment at which the base lifts.
-
-    Attributes
-    ----------
-    stiffness : float
-        Elastic stiffness k in N/m, positive.
-    yield_force : float
-        F_y in N, positive.
-    post_yield_ratio : float
-        α, the stiffness after yielding over the elastic one, in [0, 1).
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    tension_only : bool
-        Whether the fuse buckles or is unhooked, so that it cannot push: F = max(0, ·).
-    rupture_elongation : float or None
-        Elongation in m at which the fuse breaks, for good. Larger than F_y/k. Default: it never does.
-    between, cosine, height
-        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
-        direction; see `Attachment`.
 
     Raises
     ------
@@ -175,38 +135,40 @@ class YieldingDissipator(Attachment):
     (True, 5.89)
     """
 
-    stiffness: float
-    yield_force: float
-    post_yield_ratio: float = 0.0
-    position: float = 0.0
-    tension_only: bool = False
-    rupture_elongation: float | None = None
+    title: ClassVar[str] = "Yielding dissipator"
+
+    stiffness: Annotated[float, Described("the elastic stiffness", "N/m", rule="positive")]
+    yield_force: Annotated[float, Described("the force at which the fuse yields", "N", rule="positive")]
+    post_yield_ratio: PostYieldRatio = 0.0
+    position: Position = 0.0
+    tension_only: Annotated[
+        bool,
+        Described(
+            "whether the fuse cannot push",
+            rule="flag",
+            note="It buckles or is unhooked then, so that F = max(0, ·).",
+        ),
+    ] = False
+    rupture_elongation: Annotated[
+        float | None,
+        Described(
+            "the elongation at which the fuse breaks",
+            "m",
+            rule="positive",
+            note="For good; beyond F_y/k. Default: it never does.",
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
-        vars(self).update(
-            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
-            yield_force=checked_positive("yield_force", self.yield_force, "N"),
-            post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio),
-            position=checked_finite("position", self.position, "m"),
-            tension_only=checked_instance("tension_only", self.tension_only, bool),
-            rupture_elongation=checked_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness),
-        )
         self.check_attachment()
+        if self.rupture_elongation is not None:
+            _check_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness)
 
 
+@described
 @dataclass(frozen=True, repr=False)
 class ViscousDamper(Attachment):
     """A linear viscous damper between the base and the ground: F = c δ'.
-
-    Attributes
-    ----------
-    coefficient : float
-        c in N s/m, zero or positive.
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    between, cosine, height
-        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
-        direction; see `Attachment`.
 
     Raises
     ------
@@ -223,30 +185,16 @@ class ViscousDamper(Attachment):
     [0.056, 0.0529]
     """
 
-    coefficient: float
-    position: float = 0.0
+    title: ClassVar[str] = "Viscous damper"
 
-    def __post_init__(self) -> None:
-        vars(self).update(
-            coefficient=checked_positive("coefficient", self.coefficient, "N s/m", zero=True),
-            position=checked_finite("position", self.position, "m"),
-        )
-        self.check_attachment()
+    coefficient: Annotated[float, Described("the force over the velocity", "N s/m", rule="zero or positive")]
+    position: Position = 0.0
 
 
+@described
 @dataclass(frozen=True, repr=False)
 class FrictionDamper(Attachment):
     """A friction damper between the base and the ground: F = ± F_0 while it slides; it sticks in between.
-
-    Attributes
-    ----------
-    force : float
-        F_0 in N, zero or positive.
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    between, cosine, height
-        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
-        direction; see `Attachment`.
 
     Raises
     ------
@@ -262,15 +210,10 @@ class FrictionDamper(Attachment):
     (True, 5.89)
     """
 
-    force: float
-    position: float = 0.0
+    title: ClassVar[str] = "Friction damper"
 
-    def __post_init__(self) -> None:
-        vars(self).update(
-            force=checked_positive("force", self.force, "N", zero=True),
-            position=checked_finite("position", self.position, "m"),
-        )
-        self.check_attachment()
+    force: Annotated[float, Described("the force at which the damper slides", "N", rule="zero or positive")]
+    position: Position = 0.0
 
 
 BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper | ElementLaw

@@ -3,28 +3,26 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import SupportsIndex
+from typing import Annotated, ClassVar, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
-    MOST_STORIES,
     check_all_positive,
     checked_damping_ratios,
     checked_finite_vector,
-    checked_in_range,
     checked_mode_count,
     checked_positive,
-    checked_whole_number,
     float_array,
     number_of_dimensions,
-    real_or_nan,
 )
+from rockflex.foundation.descriptions import PLAIN, Described, described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.matrices import checked_heights, checked_mass, checked_stiffness
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import DAMPING_RATIOS, BaseMass, FrameSchema, HalfWidth
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.structure._analysis import ModalProperties, modal_properties
@@ -36,6 +34,7 @@ MIN_SAFE, MAX_SAFE = 1e-20, 1e20  # of numbers in SI units whose products certai
 MAX_ASPECT_RATIO = 1e4  # h*_1/B from which the base hardly adds to the inertia, which must be checked
 
 
+@described
 @dataclass(frozen=True, eq=False, init=False)
 class LumpedStructure(Value):
     """Any linear structure with N masses above a rigid base that can rock.
@@ -43,21 +42,6 @@ class LumpedStructure(Value):
     Its degrees of freedom are the horizontal displacements of the masses relative to the base (Silva & Stojadinović
     2024, Fig. 1 and Eq. 1); all others must be condensed out. Sequences become read-only arrays. The modes are
     computed once, when they are first needed.
-
-    Attributes
-    ----------
-    masses : ndarray, shape (N,) or (N, N)
-        Masses, or symmetric positive definite mass matrix, in kg, excluding the base.
-    stiffness : ndarray, shape (N, N)
-        Symmetric positive definite stiffness in N/m on a fixed base.
-    heights : ndarray, shape (N,)
-        Heights of the masses above the base in m, positive and strictly increasing.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    half_width : float
-        Half-width B of the base in m.
-    damping_ratio : ndarray, shape (N,)
-        Damping ratio of each mode in [0, 1); a single number applies to all modes.
 
     Raises
     ------
@@ -78,12 +62,41 @@ class LumpedStructure(Value):
     array([4.854])
     """
 
-    masses: Array
-    stiffness: Array
-    heights: Array
-    base_mass: float
-    half_width: float
-    damping_ratio: Array
+    title: ClassVar[str] = "Lumped masses"
+
+    masses: Annotated[
+        Array,
+        Described(
+            "a list of masses in kg, from the lowest up, or the mass matrix",
+            "kg",
+            form=PLAIN,
+            in_file=list[float] | list[list[float]],
+            note="Without the base; the matrix symmetric and positive definite.",
+        ),
+    ]
+    stiffness: Annotated[
+        Array,
+        Described(
+            "the stiffness matrix in N/m, a list of rows",
+            "N/m",
+            form=PLAIN,
+            in_file=list[list[float]],
+            note="On a fixed base; symmetric and positive definite.",
+        ),
+    ]
+    heights: Annotated[
+        Array,
+        Described(
+            "a list of the heights of the masses above the base in m, from the lowest up",
+            "m",
+            form=PLAIN,
+            in_file=list[float],
+            note="Positive and strictly increasing.",
+        ),
+    ]
+    base_mass: BaseMass
+    half_width: HalfWidth
+    damping_ratio: Annotated[Array, DAMPING_RATIOS]
 
     def __init__(
         self,
@@ -100,8 +113,8 @@ class LumpedStructure(Value):
             masses=checked_mass(masses, h.size, field="masses"),
             stiffness=checked_stiffness(stiffness, h.size),
             heights=h,
-            base_mass=checked_positive("base_mass", base_mass, "kg", zero=True),
-            half_width=checked_positive("half_width", half_width, "m"),
+            base_mass=base_mass,
+            half_width=half_width,
             damping_ratio=checked_damping_ratios("damping_ratio", damping_ratio, h.size),
         )
 
@@ -152,30 +165,13 @@ class LumpedStructure(Value):
         )
 
 
+@described
 @dataclass(frozen=True, eq=False, init=False)
 class FishBone(AssembledStructure, Value):
     """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
 
     The column represents all columns of a story and the half beams all beams of a floor. Members are
     inextensible, masses are lumped at the floors, and the rotations of the floors are condensed out.
-
-    Attributes
-    ----------
-    story_heights : ndarray, shape (N,)
-        Height L_i of each story in m, from the base up.
-    masses : ndarray, shape (N,)
-        Mass of each floor in kg.
-    column_stiffness : ndarray, shape (N,)
-        EI_i of each story in N m²: the sum over its columns.
-    beam_stiffness : ndarray, shape (N,)
-        Rotational stiffness of the beams of each floor in N m/rad, from zero to infinity, both included. It is
-        12 EI_b/L_b for a bay in antisymmetric bending; half beams on rollers give the same.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    half_width : float
-        Half-width B of the base in m.
-    damping_ratio : float or ndarray, shape (N,)
-        Damping ratio in [0, 1): one number for all modes, or one per mode.
 
     Raises
     ------
@@ -200,13 +196,46 @@ class FishBone(AssembledStructure, Value):
     array([0.398, 0.122])
     """
 
-    story_heights: Array
-    masses: Array
-    column_stiffness: Array
-    beam_stiffness: Array
-    base_mass: float
-    half_width: float
-    damping_ratio: ArrayLike
+    title: ClassVar[str] = "Frame of unequal stories"
+
+    story_heights: Annotated[
+        Array,
+        Described(
+            "a list of the heights of the stories in m, from the base up",
+            "m",
+            form=PLAIN,
+            in_file=list[float],
+            low=0.1,
+            high=100.0,
+        ),
+    ]
+    masses: Annotated[
+        Array,
+        Described("the mass of each floor in kg", "kg", form=one_for_each("story"), in_file=float | list[float]),
+    ]
+    column_stiffness: Annotated[
+        Array,
+        Described(
+            "EI of all columns of a story together in N m²",
+            "N m²",
+            form=one_for_each("story"),
+            in_file=float | list[float],
+        ),
+    ]
+    beam_stiffness: Annotated[
+        Array,
+        Described(
+            "the rotational stiffness of the beams of a floor in N m/rad (0: no beams, inf: rigid ones)",
+            "N m/rad",
+            form=one_for_each("story"),
+            in_file=float | list[float],
+            high=math.inf,
+            note="12 EI_b/L_b for a bay in antisymmetric bending; half beams on rollers give the same.",
+        ),
+    ]
+    base_mass: BaseMass
+    half_width: HalfWidth
+    damping_ratio: Annotated[ArrayLike, DAMPING_RATIOS]
 
     def __init__(
         self,
@@ -231,8 +260,8 @@ class FishBone(AssembledStructure, Value):
             masses=_one_value_per_story("masses", masses, n, "kg"),
             column_stiffness=_one_value_per_story("column_stiffness", column_stiffness, n, "N m²"),
             beam_stiffness=_checked_beam_stiffnesses(beam_stiffness, n),
-            base_mass=checked_positive("base_mass", base_mass, "kg", zero=True),
-            half_width=checked_positive("half_width", half_width, "m"),
+            base_mass=base_mass,
+            half_width=half_width,
             damping_ratio=damping_ratio,
         )
         vars(self).update(damping_ratio=self.lumped.damping_ratio)
@@ -306,32 +335,14 @@ def _checked_beam_stiffnesses(values: ArrayLike, n: int) -> Array:
     return array
 
 
+@described
 @dataclass(frozen=True)
-class Frame(AssembledStructure):
+class Frame(FrameSchema, AssembledStructure):
     """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
 
     Columns and beams are inextensible, of uniform stiffness, and the same in all stories; the masses are
     lumped at the floors. The stiffness is scaled to give the specified period, and the base width follows from the
     aspect ratio (Silva & Stojadinović 2024, Section 3.2 and Table 1).
-
-    Attributes
-    ----------
-    n_stories : int
-        Number of stories N, at most 1000.
-    story_height : float
-        Column length L_c in m; floor i is at i L_c.
-    story_mass : float
-        Mass of each floor in kg.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    stiffness_ratio : float
-        ρ = (EI_b/L_b)/(2 EI_c/L_c), from 0 (two cantilevers) to infinity (shear building), both included.
-    period : float
-        First natural period T_1 on a fixed base in s.
-    aspect_ratio : float
-        h*_1/B.
-    damping_ratio : float
-        Damping ratio of every mode in [0, 1).
 
     Raises
     ------
@@ -359,32 +370,10 @@ class Frame(AssembledStructure):
     array([1.   , 0.343, 0.217])
     """
 
-    n_stories: int
-    story_height: float
-    story_mass: float
-    base_mass: float
-    stiffness_ratio: float
-    period: float
-    aspect_ratio: float
-    damping_ratio: float
+    title: ClassVar[str] = "Frame of equal stories"
 
     def __post_init__(self) -> None:
-        vars(self).update(
-            n_stories=checked_whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
-            story_height=checked_positive("story_height", self.story_height, "m"),
-            story_mass=checked_positive("story_mass", self.story_mass, "kg"),
-            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
-            stiffness_ratio=_checked_stiffness_ratio(self.stiffness_ratio),
-            period=checked_positive("period", self.period, "s"),
-            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=checked_in_range(
-                "damping_ratio",
-                self.damping_ratio,
-                0.0,
-                1.0,
-                hint="Give the fraction of critical damping: 2 % is 0.02.",
-            ),
-        )
+        """No value says anything of another one."""
 
     @property
     def height(self) -> float:
@@ -482,14 +471,3 @@ def _unit_frame_rocking(n_stories: int, stiffness_ratio: float) -> RockingProper
     """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
     _, modes = _unit_frame(n_stories, stiffness_ratio)
     return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)
-
-
-def _checked_stiffness_ratio(value: float) -> float:
-    ratio = real_or_nan(value)
-    if not ratio >= 0.0:
-        raise InputError(
-            f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
-            f"but {shown(value)} was given.",
-            field="stiffness_ratio",
-        )
-    return ratio

@@ -1,7 +1,8 @@
 """The ground under the base: springs that cannot pull, friction, and beds of springs."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +20,9 @@ from rockflex.foundation.checks import (
     number_of_dimensions,
     real_or_nan,
 )
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.schema import BREADTH, POISSON_RATIO, SHEAR_MODULUS, SUBGRADE_MODULUS, HalfWidth
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 
@@ -287,42 +290,58 @@ def _checked_base_inertia(springs: Springs | None, given: float | None) -> float
     return real_or_nan(given)
 
 
+BED_DAMPING = Described(
+    "the damping coefficient of all springs together",
+    "N s/m",
+    rule="zero or positive",
+    note="In proportion to their stiffness. For a fraction of critical damping use `Springs.damped`.",
+    low=0.0,
+    high=1e15,
+)
+NUMBER_OF_SPRINGS = Described(
+    "the number of springs",
+    rule="whole",
+    within=(2, _MAX_SPRINGS),
+    note="With end zones at least 3, one in each of them.",
+    label="Number of springs",
+    low=2,
+    high=_MAX_SPRINGS,
+)
+END_ZONE = Described("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
+END_RATIO = Described("the stiffness of the end zones over that of the rest", rule="positive", low=1e-3, high=1e3)
+SOIL_DENSITY = Described(
+    "the density of the soil, for dashpots that radiate",
+    "kg/m³",
+    rule="positive",
+    note="ρ V_La per area with V_La = 3.4 (G/ρ)^0.5/(π (1 - ν)) (Gazetas 1991). This is the radiation of waves in "
+    "heave. In rotation of a base that stays on the ground it is the limit for high frequencies; at those of "
+    "buildings far less is radiated. Default: no dashpots.",
+    low=1.0,
+    high=1e4,
+)
+_Shift = Annotated[
+    float,
+    Described("the distance of the masses to the right of the middle of the base", "m", rule="finite"),
+]
+
+
+@described
 def winkler_bed(
-    half_width: float,
-    breadth: float,
-    subgrade_modulus: float,
+    half_width: HalfWidth,
+    breadth: Annotated[float, BREADTH],
+    subgrade_modulus: Annotated[float, SUBGRADE_MODULUS],
     *,
-    damping: float = 0.0,
-    n: int = 20,
-    end_zone: float = 0.0,
-    end_ratio: float = 1.0,
-    eccentricity: float = 0.0,
+    damping: Annotated[float, BED_DAMPING] = 0.0,
+    n: Annotated[int, NUMBER_OF_SPRINGS] = 20,
+    end_zone: Annotated[float, END_ZONE] = 0.0,
+    end_ratio: Annotated[float, END_RATIO] = 1.0,
+    eccentricity: _Shift = 0.0,
 ) -> Springs:
     """Return equally spaced springs under a rigid base, which represent a Winkler bed.
 
     Each spring stands in the middle of the strip that it supports, with k = k_s × breadth × width of the strip. The
     total stiffness equals that of the continuous bed. If the bed is uniform, the rotational stiffness is smaller by the
     factor 1 - 1/n².
-
-    Parameters
-    ----------
-    half_width
-        Half-width B of the base in m.
-    breadth
-        Dimension of the base perpendicular to the plane of rocking in m.
-    subgrade_modulus
-        Modulus of subgrade reaction k_s in N/m³: pressure over settlement.
-    damping
-        Total vertical damping coefficient Σ c in N s/m, distributed in proportion to the stiffness. For a fraction of
-        critical damping use `Springs.damped`.
-    n
-        Number of springs, 2 to 200. With end zones it includes at least one spring in each of them.
-    end_zone
-        Length of the stiffer zone at either end in m, from 0 to below `half_width`.
-    end_ratio
-        Stiffness of the end zones over the stiffness of the rest, positive.
-    eccentricity
-        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
 
     Returns
     -------
@@ -341,31 +360,27 @@ def winkler_bed(
     >>> round(bed.total_stiffness / (40e6 * 4.0 * 3.0), 6), round(bed.rotational_stiffness / (40e6 * 3.0 * 16.0 / 3), 4)
     (1.0, 0.9994)
     """
-    B = checked_positive("half_width", half_width, "m")
-    across = checked_positive("breadth", breadth, "m")
-    modulus = checked_positive("subgrade_modulus", subgrade_modulus, "N/m³")
-    total = checked_positive("damping", damping, "N s/m", zero=True)
-    ratio = checked_positive("end_ratio", end_ratio, "times the stiffness of the rest")
-    shift = _checked_shift(eccentricity, B)
+    B, shift = half_width, _checked_shift(eccentricity, half_width)
     zone = checked_in_range(
         "end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them."
     )
     count = checked_whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
     edges = _spring_strip_edges(B, zone, count)
     middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
-    stiffness = modulus * across * widths * np.where(np.abs(middles) > B - zone, ratio, 1.0)
-    return Springs(middles - shift, stiffness, total * stiffness / stiffness.sum(), across * widths)
+    stiffness = subgrade_modulus * breadth * widths * np.where(np.abs(middles) > B - zone, end_ratio, 1.0)
+    return Springs(middles - shift, stiffness, damping * stiffness / stiffness.sum(), breadth * widths)
 
 
+@described
 def asce41_bed(
-    half_width: float,
-    breadth: float,
-    shear_modulus: float,
-    poisson_ratio: float,
+    half_width: HalfWidth,
+    breadth: Annotated[float, BREADTH],
+    shear_modulus: Annotated[float, SHEAR_MODULUS],
+    poisson_ratio: Annotated[float, POISSON_RATIO],
     *,
-    damping: float = 0.0,
-    n: int = 20,
-    eccentricity: float = 0.0,
+    damping: Annotated[float, BED_DAMPING] = 0.0,
+    n: Annotated[int, NUMBER_OF_SPRINGS] = 20,
+    eccentricity: _Shift = 0.0,
 ) -> Springs:
     """Return a Winkler bed with the stiffened ends of ASCE/SEI 41-17, Section 8.4.2.3 (FEMA 356, Figure 4-5).
 
@@ -374,24 +389,6 @@ def asce41_bed(
     size of the zone, the latter of an endless strip (Gazetas 1991, J. Geotech. Eng. 117(9), 1363-1381), so the bed is
     stiff enough both in heave and in rotation. Compared with Gazetas' formula, within 1 %, and not with the text of the
     standard.
-
-    Parameters
-    ----------
-    half_width
-        Half-width B of the base in m, more than breadth/6.
-    breadth
-        Dimension B_f of the base perpendicular to the plane of rocking in m.
-    shear_modulus
-        Effective shear modulus G of the soil in N/m².
-    poisson_ratio
-        ν of the soil, from 0 to 0.5.
-    damping
-        Total vertical damping coefficient Σ c in N s/m, distributed in proportion to the stiffness. For a fraction of
-        critical damping use `Springs.damped`.
-    n
-        Number of springs, 3 to 200, including at least one in each end zone.
-    eccentricity
-        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
 
     Returns
     -------
@@ -410,11 +407,7 @@ def asce41_bed(
     >>> round(bed.total_stiffness / (20e6 / 0.65), 3)  # 6.83 × 1 m + 0.73 × 3 m
     9.02
     """
-    B = checked_positive("half_width", half_width, "m")
-    across = checked_positive("breadth", breadth, "m")
-    modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
-    poisson = _checked_poisson_ratio(poisson_ratio)
-    zone = across / 6.0
+    B, poisson, zone = half_width, _checked_poisson_ratio(poisson_ratio), breadth / 6.0
     if zone >= B:
         raise InputError(
             f"The end zones of ASCE 41, breadth/6 = {zone:g} m each, cover the whole base of half_width {B:g} m. Use "
@@ -423,8 +416,8 @@ def asce41_bed(
         )
     return winkler_bed(
         B,
-        across,
-        _MIDDLE_STIFFNESS * modulus / (1.0 - poisson) / across,
+        breadth,
+        _MIDDLE_STIFFNESS * shear_modulus / (1.0 - poisson) / breadth,
         damping=damping,
         n=n,
         end_zone=zone,
@@ -433,16 +426,17 @@ def asce41_bed(
     )
 
 
+@described
 def gazetas_bed(
-    half_width: float,
-    breadth: float,
-    shear_modulus: float,
-    poisson_ratio: float,
+    half_width: HalfWidth,
+    breadth: Annotated[float, BREADTH],
+    shear_modulus: Annotated[float, SHEAR_MODULUS],
+    poisson_ratio: Annotated[float, POISSON_RATIO],
     *,
-    density: float | None = None,
-    n: int = 20,
-    end_zone: float | None = None,
-    eccentricity: float = 0.0,
+    density: Annotated[float | None, SOIL_DENSITY] = None,
+    n: Annotated[int, NUMBER_OF_SPRINGS] = 20,
+    end_zone: Annotated[float | None, replace(END_ZONE, note="With n > 2. Default: 0.3 B.")] = None,
+    eccentricity: _Shift = 0.0,
 ) -> Springs:
     """Return springs with the stiffness of a rigid rectangular footing on an elastic half-space (Gazetas 1991).
 
@@ -457,27 +451,6 @@ def gazetas_bed(
     per area between its end zones and in these as much as K_θ requires (NIST GCR 12-917-21, Chapter 2); in heave it
     is then stiffer than K_z. So are two springs where they would stand beyond the edges: they are put there. K_θ is
     right in all of them. The coefficients were not checked against the texts.
-
-    Parameters
-    ----------
-    half_width
-        Half-width B of the base in m.
-    breadth
-        Dimension of the base perpendicular to the plane of rocking in m; from 1/20 to below 20 of the width 2B.
-    shear_modulus
-        Effective shear modulus G of the soil in N/m², at the strains of the earthquake.
-    poisson_ratio
-        ν of the soil, from 0 to 0.5.
-    density
-        ρ of the soil in kg/m³, for dashpots: ρ V_La per area with V_La = 3.4 (G/ρ)^0.5/(π (1 - ν)) (Gazetas 1991). This
-        is the radiation of waves in heave. In rotation of a base that stays on the ground it is the limit for high
-        frequencies; at those of buildings far less is radiated. Default: no dashpots.
-    n
-        Number of springs, 2 to 200.
-    end_zone
-        Length of the stiffer zone at either end in m, with n > 2. Default: 0.3 B.
-    eccentricity
-        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
 
     Returns
     -------
@@ -497,19 +470,17 @@ def gazetas_bed(
     >>> two.positions.round(3), round(two.total_stiffness / 1e6), round(two.rotational_stiffness / 1e6)
     (array([-1.326,  1.326]), 240, 422)
     """
-    B = checked_positive("half_width", half_width, "m")
-    across = checked_positive("breadth", breadth, "m")
+    B, across, modulus = half_width, breadth, shear_modulus
     checked_in_range(
         "breadth/(2 half_width)", across / (2.0 * B), 0.05, 20.0, field="breadth", hint="Check their units, m."
     )
-    modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
     poisson, shift = _checked_poisson_ratio(poisson_ratio), _checked_shift(eccentricity, B)
     L, l = max(B, across / 2.0), min(B, across / 2.0)  # noqa: E741
     inertia = across * (2.0 * B) ** 3 / 12.0
     shape = 3.0 * (L / l) ** 0.15 if L == B else (L / l) ** 0.25 * (2.4 + 0.5 * l / L)
     heave = 2.0 * modulus * L / (1.0 - poisson) * (0.73 + 1.54 * (l / L) ** 0.75)
     rotation = modulus / (1.0 - poisson) * inertia**0.75 * shape
-    if checked_whole_number("n", n, 2, _MAX_SPRINGS) == 2:
+    if n == 2:
         if end_zone is not None:
             raise InputError(
                 "end_zone is for a bed of more than two springs. Leave it out, or give n.", field="end_zone"
@@ -526,13 +497,11 @@ def gazetas_bed(
         springs = Springs(even.positions, even.stiffness * np.where(ends, ratio, 1.0), 0.0, even.area)
     if density is None or springs.area is None:
         return springs
-    soil = checked_positive("density", density, "kg/m³")
-    wave = 3.4 * math.sqrt(modulus / soil) / (math.pi * (1.0 - poisson))
-    return Springs(springs.positions, springs.stiffness, soil * wave * springs.area, springs.area)
+    wave = 3.4 * math.sqrt(modulus / density) / (math.pi * (1.0 - poisson))
+    return Springs(springs.positions, springs.stiffness, density * wave * springs.area, springs.area)
 
 
-def _checked_shift(eccentricity: float, B: float) -> float:
-    shift = checked_finite("eccentricity", eccentricity, "m")
+def _checked_shift(shift: float, B: float) -> float:
     if not abs(shift) < B:
         raise InputError(
             f"eccentricity must be less than half_width {B:g} m, but {shift:g} m was given.", field="eccentricity"

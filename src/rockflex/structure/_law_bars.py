@@ -1,31 +1,24 @@
-"""Bars between base and ground given by their branches: flag-shaped, with a gap, and multi-linear elastic.
-
-The metadata of a field are what files and the page say of it.
-"""
+"""Bars between base and ground given by their branches: flag-shaped, with a gap, and multi-linear elastic."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.foundation.checks import checked_instance, checked_positive, real_or_nan
+from rockflex.foundation.checks import real_or_nan
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
+from rockflex.structure._attachment import Position
 from rockflex.structure._element_law import Branch, BranchEnd, ElementLaw
-from rockflex.structure._elements import checked_post_yield_ratio
+from rockflex.structure._elements import PostYieldRatio
+
+OnlyPulls = Annotated[bool, Described("whether the bar cannot push", rule="flag")]
 
 
-def about(description: str, unit: str = "", **more: Any) -> dict[str, Any]:
-    """Return the metadata of a field: its description, which completes "it must be ...", and its unit."""
-    return {"description": description, "unit": unit, **more}
-
-
-POSITION = about("the distance to the right of the axis of the masses", "m")
-ONLY_PULLS = about("whether the bar cannot push")
-
-
+@described
 @dataclass(frozen=True, repr=False)
 class FlagShapedBar(ElementLaw):
     """A superelastic bar of a shape-memory alloy, or any device with a flag-shaped loop.
@@ -34,21 +27,6 @@ class FlagShapedBar(ElementLaw):
     turns back it falls by β F_y with the stiffness k, then follows the lower plateau, parallel to the upper one, back
     to the line k δ (as Christopoulos, Filiatrault & Folz 2002). A whole loop to the elongation δ_m dissipates
     β F_y (δ_m - F_y/k) to each side.
-
-    Attributes
-    ----------
-    stiffness : float
-        k in N/m, positive.
-    yield_force : float
-        F_y in N, positive.
-    post_yield_ratio : float
-        α in [0, 1).
-    flag_depth : float
-        β, from above 0 to 1 - α; at 1 - α the lower plateau meets zero force.
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    tension_only : bool
-        Whether the bar goes slack instead of pushing.
 
     Raises
     ------
@@ -65,16 +43,21 @@ class FlagShapedBar(ElementLaw):
 
     title: ClassVar[str] = "Flag-shaped bar"
 
-    stiffness: float = field(metadata=about("the elastic stiffness", "N/m"))
-    yield_force: float = field(metadata=about("the force at which the upper plateau begins", "N"))
-    post_yield_ratio: float = field(metadata=about("the stiffness after yielding over the elastic one"))
-    flag_depth: float = field(metadata=about("the height of the loop over the yield force"))
-    position: float = field(default=0.0, metadata=POSITION)
-    tension_only: bool = field(default=False, metadata=ONLY_PULLS)
+    stiffness: Annotated[float, Described("the elastic stiffness", "N/m", rule="positive")]
+    yield_force: Annotated[float, Described("the force at which the upper plateau begins", "N", rule="positive")]
+    post_yield_ratio: PostYieldRatio
+    flag_depth: Annotated[
+        float,
+        Described(
+            "the height of the loop over the yield force",
+            note="β, from above 0 to 1 - α; at 1 - α the lower plateau meets zero force.",
+        ),
+    ]
+    position: Position = 0.0
+    tension_only: OnlyPulls = False
 
     def __post_init__(self) -> None:
-        ratio = checked_post_yield_ratio(self.post_yield_ratio)
-        depth = real_or_nan(self.flag_depth)
+        ratio, depth = self.post_yield_ratio, real_or_nan(self.flag_depth)
         if not 0.0 < depth <= 1.0 - ratio:
             raise InputError(
                 f"flag_depth must be above 0 and at most 1 - post_yield_ratio, {1.0 - ratio:g}, but "
@@ -82,13 +65,7 @@ class FlagShapedBar(ElementLaw):
                 "would push the base open, as a YieldingDissipator does.",
                 field="flag_depth",
             )
-        vars(self).update(
-            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
-            yield_force=checked_positive("yield_force", self.yield_force, "N"),
-            post_yield_ratio=ratio,
-            flag_depth=depth,
-            tension_only=checked_instance("tension_only", self.tension_only, bool),
-        )
+        vars(self).update(flag_depth=depth)
 
     @property
     def plateaus(self) -> tuple[float, float]:
@@ -140,20 +117,10 @@ class FlagShapedBar(ElementLaw):
         return np.where((elongation < 0.0) & self.tension_only, 0.0, elastic + changed)
 
 
+@described
 @dataclass(frozen=True, repr=False)
 class GapBar(ElementLaw):
     """An elastic bar or stop that acts beyond a gap: F = k (δ - gap) where δ exceeds it, otherwise zero.
-
-    Attributes
-    ----------
-    stiffness : float
-        k in N/m, positive.
-    gap : float
-        Elongation in m from which it is stretched, zero or positive.
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    both_ways : bool
-        Whether it acts in the same way where it is shortened by more than the gap.
 
     Raises
     ------
@@ -169,17 +136,10 @@ class GapBar(ElementLaw):
 
     title: ClassVar[str] = "Bar with a gap"
 
-    stiffness: float = field(metadata=about("the stiffness beyond the gap", "N/m"))
-    gap: float = field(metadata=about("the elongation from which the bar is stretched", "m"))
-    position: float = field(default=0.0, metadata=POSITION)
-    both_ways: bool = field(default=False, metadata=about("whether it acts when it is shortened, too"))
-
-    def __post_init__(self) -> None:
-        vars(self).update(
-            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
-            gap=checked_positive("gap", self.gap, "m", zero=True),
-            both_ways=checked_instance("both_ways", self.both_ways, bool),
-        )
+    stiffness: Annotated[float, Described("the stiffness beyond the gap", "N/m", rule="positive")]
+    gap: Annotated[float, Described("the elongation from which the bar is stretched", "m", rule="zero or positive")]
+    position: Position = 0.0
+    both_ways: Annotated[bool, Described("whether it acts when it is shortened, too", rule="flag")] = False
 
     def branches(self) -> Mapping[str, Branch]:
         """Return the branch within the gap, and those beyond it."""
@@ -190,20 +150,10 @@ class GapBar(ElementLaw):
         )
 
 
+@described
 @dataclass(frozen=True, repr=False)
 class MultilinearBar(ElementLaw):
     """A nonlinear elastic bar whose force is linear between given points, and beyond the last two.
-
-    Attributes
-    ----------
-    elongations : sequence of float
-        Elongations in m, rising from above zero; at zero the force is zero.
-    forces : sequence of float
-        Forces in N at these elongations.
-    position : float
-        Distance in m from the axis of the masses, positive to the right.
-    tension_only : bool
-        Whether the bar cannot push; otherwise F(-δ) = -F(δ).
 
     Raises
     ------
@@ -219,18 +169,15 @@ class MultilinearBar(ElementLaw):
 
     title: ClassVar[str] = "Multi-linear elastic bar"
 
-    elongations: tuple[float, ...] = field(metadata=about("the elongations of the points", "m"))
-    forces: tuple[float, ...] = field(metadata=about("the forces at these elongations", "N"))
-    position: float = field(default=0.0, metadata=POSITION)
-    tension_only: bool = field(default=False, metadata=ONLY_PULLS)
+    elongations: Annotated[
+        tuple[float, ...],
+        Described("the elongations of the points", "m", rule="row", note="They rise from above zero, where F = 0."),
+    ]
+    forces: Annotated[tuple[float, ...], Described("the forces at these elongations", "N", rule="row")]
+    position: Position = 0.0
+    tension_only: OnlyPulls = False
 
     def __post_init__(self) -> None:
-        for name in ("elongations", "forces"):
-            given = getattr(self, name)
-            values = [real_or_nan(each) for each in given] if isinstance(given, Sequence | np.ndarray) else []
-            if not values or not np.isfinite(values).all():
-                raise InputError(f"{name} must be a row of numbers, but {shown(given)} was given.", field=name)
-            vars(self)[name] = tuple(values)
         steps = np.diff([0.0, *self.elongations])
         if len(self.forces) != len(self.elongations) or not (steps > 0.0).all():
             raise InputError(
@@ -238,7 +185,6 @@ class MultilinearBar(ElementLaw):
                 f"{shown(self.forces)} N were given. Leave out the point at zero.",
                 field="elongations",
             )
-        vars(self).update(tension_only=checked_instance("tension_only", self.tension_only, bool))
 
     def branches(self) -> Mapping[str, Branch]:
         """Return a branch for each piece."""

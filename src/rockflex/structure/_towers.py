@@ -3,16 +3,19 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_magnitude, checked_mode_count, checked_positive, is_one_of
+from rockflex.foundation.checks import checked_magnitude, checked_mode_count, is_one_of
+from rockflex.foundation.constants import MOST_MODES
+from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import DAMPING_RATIOS, BaseMass, HalfWidth, Height, Modes
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._beam import Beam
@@ -27,28 +30,10 @@ _CANTILEVER_MODES = 5
 MIN_TIP_RATIO = 0.1  # of the mass of the column
 
 
+@described
 @dataclass(frozen=True, eq=False)
 class TaperedTower(AssembledStructure, Value):
     """A hollow truncated cone with a wall of constant thickness (Silva & Stojadinović 2024, Section 4.1.1).
-
-    Attributes
-    ----------
-    height : float
-        Height in m.
-    base_radius, top_radius : float
-        Outer radius at the base and at the top in m, linear in between. The half-width B is `base_radius`.
-    wall : float
-        Thickness of the wall in m, at most the smaller radius.
-    density : float
-        Density in kg/m³.
-    elastic_modulus : float
-        Young's modulus in N/m².
-    damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio in [0, 1): one number for all modes, or one per mode.
-    method : {"ritz", "fe"}
-        Rayleigh-Ritz with the shapes of Eq. 36 (five, or `n_modes` if more), or 2000 finite elements.
-    n_modes : int
-        Number of modes, at most 200.
 
     Raises
     ------
@@ -70,27 +55,42 @@ class TaperedTower(AssembledStructure, Value):
     array([3.79, 0.81, 0.32])
     """
 
-    height: float
-    base_radius: float
-    top_radius: float
-    wall: float
-    density: float
-    elastic_modulus: float
-    damping_ratio: ArrayLike
-    method: Literal["ritz", "fe"] = "ritz"
-    n_modes: int = 5
+    title: ClassVar[str] = "Tapered tower"
+
+    height: Height
+    base_radius: Annotated[
+        float, Described("the outer radius at the base, half its width", "m", rule="positive", low=1e-2, high=500.0)
+    ]
+    top_radius: Annotated[
+        float,
+        Described("the outer radius at the top", "m", rule="positive", note="Linear in between.", low=1e-2, high=500.0),
+    ]
+    wall: Annotated[
+        float,
+        Described(
+            "the thickness of the wall",
+            "m",
+            rule="positive",
+            note="At most the smaller radius.",
+            low=1e-3,
+            high=100.0,
+        ),
+    ]
+    density: Annotated[float, Described("the density of the material", "kg/m³", rule="positive", low=1.0, high=1e5)]
+    elastic_modulus: Annotated[float, Described("Young's modulus of the material", "N/m²", rule="positive")]
+    damping_ratio: Annotated[ArrayLike, DAMPING_RATIOS]
+    method: Annotated[
+        Literal["ritz", "fe"],
+        Described(
+            '"ritz" (shapes over the whole height) or "fe" (2000 finite elements)',
+            note="The shapes are those of Eq. 36, five, or `n_modes` if more.",
+        ),
+    ] = "ritz"
+    n_modes: Modes = 5
 
     def __post_init__(self) -> None:
         if not is_one_of(self.method, ("fe", "ritz")):
             raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.', field="method")
-        vars(self).update(
-            height=checked_positive("height", self.height, "m"),
-            base_radius=checked_positive("base_radius", self.base_radius, "m"),
-            top_radius=checked_positive("top_radius", self.top_radius, "m"),
-            wall=checked_positive("wall", self.wall, "m"),
-            density=checked_positive("density", self.density, "kg/m³"),
-            elastic_modulus=checked_positive("elastic_modulus", self.elastic_modulus, "N/m²"),
-        )
         name, radius = min(("top_radius", self.top_radius), ("base_radius", self.base_radius), key=lambda r: r[1])
         if self.wall > radius:
             raise InputError(
@@ -98,7 +98,7 @@ class TaperedTower(AssembledStructure, Value):
                 "It is the wall thickness, not a diameter; for a solid tower it equals the radius.",
                 field="wall",
             )
-        vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
+        vars(self)["damping_ratio"] = self.beam.damping_ratio
 
     @cached_property
     @explaining_overflow("The sections of a tower with these radii, wall, density and elastic_modulus")
@@ -160,32 +160,10 @@ class _RingSecondMoment(_RingSection):
         return self.factor * (math.pi * (outer**2 - inner**2)) * ((outer**2 + inner**2) / 4.0)
 
 
+@described
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CantileverWithTipMass(AssembledStructure, Value):
     """A uniform column with a mass at its tip, clamped to a base that can rock.
-
-    Attributes
-    ----------
-    height : float
-        Height H of the tip in m.
-    tip_mass : float
-        Mass at the tip in kg.
-    bending_stiffness : float
-        EI of the column in N m². With a section, its stiffness.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    half_width : float
-        Half-width B of the base in m.
-    damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio in [0, 1): one number for all modes, or one per mode.
-    mass_per_length : float
-        Mass of the column in kg/m, zero or positive. With a section, its mass.
-    tip_inertia : float
-        Rotary inertia of the tip mass about its own axis in kg m², zero or positive.
-    n_modes : int, optional
-        Number of modes. Default: 5; for a massless column all its modes: one, or two with `tip_inertia`.
-    section : Section, optional
-        Section of the column, in place of `bending_stiffness` and `mass_per_length`.
 
     Raises
     ------
@@ -204,30 +182,49 @@ class CantileverWithTipMass(AssembledStructure, Value):
     588600
     """
 
-    height: float
-    tip_mass: float
-    bending_stiffness: float | None = None
-    base_mass: float
-    half_width: float
-    damping_ratio: ArrayLike
-    mass_per_length: float = 0.0
-    tip_inertia: float = 0.0
-    n_modes: int | None = None
-    section: Section | None = None
+    title: ClassVar[str] = "Cantilever with a mass at its tip"
+
+    height: Annotated[
+        float,
+        Described("the height of the body at the tip above the base", "m", rule="positive", low=0.01, high=2000.0),
+    ]
+    tip_mass: Annotated[float, Described("the mass of the body at the tip", "kg", rule="positive")]
+    bending_stiffness: Annotated[
+        float | None,
+        Described("EI of the column (unless a section gives it)", "N m²", rule="positive", label="Bending stiffness"),
+    ] = None
+    base_mass: BaseMass
+    half_width: HalfWidth
+    damping_ratio: Annotated[ArrayLike, DAMPING_RATIOS]
+    mass_per_length: Annotated[
+        float, Described("the mass of the column per metre", "kg/m", rule="zero or positive", note="Or of its section.")
+    ] = 0.0
+    tip_inertia: Annotated[
+        float,
+        Described("the rotary inertia of the body at the tip about its own axis", "kg m²", rule="zero or positive"),
+    ] = 0.0
+    n_modes: Annotated[
+        int | None,
+        Described(
+            "how many modes to take",
+            rule="whole",
+            within=(1, MOST_MODES),
+            note="Default: 5; for a massless column all its modes: one, or two with `tip_inertia`.",
+            low=1,
+            high=100,
+            label="Modes",
+        ),
+    ] = None
+    section: Annotated[
+        Section | None, Described("the cross-section in place of bending stiffness and mass", form="a table of {}")
+    ] = None
 
     def __post_init__(self) -> None:
         section = checked_section(self.section)
         stiffness = value_from_section(section, "bending_stiffness", self.bending_stiffness)
         mass = value_from_section(section, "mass_per_length", self.mass_per_length, absent=0.0)
-        vars(self).update(
-            height=checked_positive("height", self.height, "m"),
-            tip_mass=checked_positive("tip_mass", self.tip_mass, "kg"),
-            bending_stiffness=checked_positive("bending_stiffness", stiffness, "N m²"),
-            mass_per_length=checked_positive("mass_per_length", mass, "kg/m", zero=True),
-            tip_inertia=checked_positive("tip_inertia", self.tip_inertia, "kg m²", zero=True),
-        )
-        built = self.built
-        vars(self).update(base_mass=built.base_mass, half_width=built.half_width, damping_ratio=built.damping_ratio)
+        vars(self).update(bending_stiffness=stiffness, mass_per_length=mass)
+        vars(self)["damping_ratio"] = self.built.damping_ratio
 
     @cached_property
     def built(self) -> Beam | ModalStructure:
@@ -279,21 +276,23 @@ class CantileverWithTipMass(AssembledStructure, Value):
         )
 
 
+@described(title="Rigid block")
 @explaining_overflow("The inertia of a block with this half_diagonal and mass")
-def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> RockingProperties:
+def rigid_block(
+    slenderness: Annotated[
+        float,
+        Described("atan(b/h) of the half sides", "rad", note="α, above 0 and below π/2.", low=1e-4, high=1.5),
+    ],
+    half_diagonal: Annotated[
+        float,
+        Described("the distance from the corner to the centre", "m", rule="positive", note="R.", low=1e-3, high=1000.0),
+    ],
+    mass: Annotated[float, Described("the mass, which rotations do not depend on", "kg", rule="positive")] = 1.0,
+) -> RockingProperties:
     """Return the properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
 
     I_θ = 4/3 m R², B = R sin α, L_0^r = m R cos α; the frequency parameter is p² = 3 g/(4 R). Housner's coefficient
     1 - 2 m B²/I_θ is 1 - 1.5 sin² α (Housner 1963, Bull. Seism. Soc. Am. 53(2), 403-417).
-
-    Parameters
-    ----------
-    slenderness
-        α = atan(b/h) in rad, above 0 and below π/2.
-    half_diagonal
-        R in m, positive.
-    mass
-        m in kg, positive; the rotations do not depend on it.
 
     Raises
     ------
@@ -313,7 +312,7 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
             f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
             field="slenderness",
         )
-    r, m = checked_positive("half_diagonal", half_diagonal, "m"), checked_positive("mass", mass, "kg")
+    r, m = half_diagonal, mass
     return RockingProperties(
         omega=(),
         effective_mass=(),

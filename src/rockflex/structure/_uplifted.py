@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
-    MOST_MODES,
     checked_instance,
     checked_positive,
     checked_whole_number,
     float_array,
     is_one_of,
 )
+from rockflex.foundation.constants import MOST_MODES
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.shown import shown

@@ -3,13 +3,16 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import MOST_MODES, checked_damping_ratios, checked_positive, checked_whole_number
+from rockflex.foundation.checks import checked_damping_ratios
+from rockflex.foundation.descriptions import PLAIN, Described, described
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import DAMPING_RATIOS, AspectRatio, BaseMass, Height, Modes, Period
 from rockflex.foundation.values import Value
 from rockflex.structure._beam_modes import N_STATIONS, beam_forces_at_stations, beam_mesh_nodes, gauss_points
 from rockflex.structure._participation import MassNormalisedModes
@@ -19,6 +22,7 @@ _N_PANELS, _N_POINTS = 64, 8
 _BOUNDARY_LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 
+@described
 @dataclass(frozen=True, eq=False)
 class WallFrame(AssembledStructure, Value):
     """A uniform flexural wall coupled to a uniform shear frame over the full height.
@@ -26,25 +30,6 @@ class WallFrame(AssembledStructure, Value):
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),
     203-211), with modes in closed form. The stiffness is scaled to give the specified period, and the base width
     follows from the aspect ratio, as in `Frame`.
-
-    Attributes
-    ----------
-    height : float
-        Height H in m.
-    mass : float
-        Total mass m H of wall and frame in kg, uniform along the height.
-    stiffness_parameter : float
-        α = H √(GA/EI), from 0 (wall only: flexure) to infinity (frame only: shear), both included.
-    base_mass : float
-        Mass m_0 of the base in kg, zero or positive.
-    period : float
-        First natural period T_1 on a fixed base in s.
-    aspect_ratio : float
-        h*_1/B.
-    damping_ratio : float or ndarray, shape (n_modes,)
-        Damping ratio in [0, 1): one number for all modes, or one per mode.
-    n_modes : int
-        Number of modes, at most 200.
 
     Raises
     ------
@@ -64,29 +49,31 @@ class WallFrame(AssembledStructure, Value):
     3.56
     """
 
-    height: float
-    mass: float
-    stiffness_parameter: float
-    base_mass: float
-    period: float
-    aspect_ratio: float
-    damping_ratio: ArrayLike
-    n_modes: int = 5
+    title: ClassVar[str] = "Wall and frame"
+
+    height: Height
+    mass: Annotated[
+        float,
+        Described("the mass of wall and frame together, without the base", "kg", rule="positive", note="Uniform."),
+    ]
+    stiffness_parameter: Annotated[
+        float,
+        Described(
+            "α = H √(GA/EI), a number from 0 (a wall alone: flexure) to inf (a frame alone: shear)",
+            form=PLAIN,
+            rule="zero, positive or infinite",
+            low=0.0,
+            high=math.inf,
+        ),
+    ]
+    base_mass: BaseMass
+    period: Period
+    aspect_ratio: AspectRatio
+    damping_ratio: Annotated[ArrayLike, DAMPING_RATIOS]
+    n_modes: Modes = 5
 
     def __post_init__(self) -> None:
-        n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
-        vars(self).update(
-            height=checked_positive("height", self.height, "m"),
-            mass=checked_positive("mass", self.mass, "kg"),
-            stiffness_parameter=checked_positive(
-                "stiffness_parameter", self.stiffness_parameter, "m/m", zero=True, infinite=True
-            ),
-            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
-            period=checked_positive("period", self.period, "s"),
-            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
-            n_modes=n_modes,
-        )
+        vars(self)["damping_ratio"] = checked_damping_ratios("damping_ratio", self.damping_ratio, self.n_modes)
 
     @property
     def half_width(self) -> float:

@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import masked_count, real_or_nan
+from rockflex.foundation.descriptions import Described, described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
@@ -20,23 +21,13 @@ from rockflex.structure._structure import ModifiedStructure, Structure
 COUPLED = 1e-9  # relative: stiffness between drifts that is attributed to rounding
 
 
+@described
 @dataclass(frozen=True, eq=False, init=False)
 class YieldingStories(ModifiedStructure, Value):
     """A shear structure whose stories yield: F = α k u + (1 - α) z of the drift u, z elastic up to the strength.
 
     The modes are those of the elastic structure, and so is the damping, which is overestimated while stories yield.
     Base shear, base moment and story shears are those of the stories as they are.
-
-    Attributes
-    ----------
-    structure
-        A shear structure: a `Frame` or a `FishBone` whose beams are rigid, a `LumpedStructure` with such a stiffness,
-        or one of them with `Leaning` mass. Elements and an eccentricity come afterwards.
-    strengths : ndarray, shape (N,)
-        Story shears at first yield in N, bottom to top; infinite for a story that stays elastic. A single number
-        applies to all stories.
-    post_yield_ratio : ndarray, shape (N,)
-        α of each story, the stiffness after yielding over the elastic one, from 0 to below 1; or a single number.
 
     Raises
     ------
@@ -60,11 +51,37 @@ class YieldingStories(ModifiedStructure, Value):
     array([2.35, 1.83, 3.26])
     """
 
-    structure: Structure
-    strengths: Array
-    post_yield_ratio: Array
+    structure: Annotated[
+        Structure,
+        Described(
+            "a shear structure",
+            in_file=False,
+            note="A `Frame` or a `FishBone` whose beams are rigid, a `LumpedStructure` with such a stiffness, or one "
+            "of them with `Leaning` mass. Elements and an eccentricity come afterwards.",
+        ),
+    ]
+    strengths: Annotated[
+        Array,
+        Described(
+            "the shear at which a story yields first",
+            "N",
+            form=one_for_each("story"),
+            in_file=float | list[float],
+            note="Of each story from the bottom to the top, shape (N,), or one number for all; infinite for a story "
+            "that stays elastic.",
+        ),
+    ]
+    post_yield_ratio: Annotated[
+        Array,
+        Described(
+            "the stiffness after yielding over the elastic one",
+            form=one_for_each("story"),
+            in_file=float | list[float],
+            note="From 0 to below 1, of each story or one number for all.",
+        ),
+    ]
 
-    def __init__(self, structure: Structure, strengths: ArrayLike, post_yield_ratio: ArrayLike) -> None:
+    def __init__(self, structure: Structure, strengths: ArrayLike, post_yield_ratio: ArrayLike = 0.0) -> None:
         lumped = lumped_structure_of(structure.structure if isinstance(structure, Leaning) else structure)
         stiffness = story_stiffness(lumped)
         count = stiffness.size

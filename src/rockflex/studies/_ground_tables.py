@@ -1,17 +1,30 @@
 """The ground of a structure in files and forms: springs, beds of springs, friction, and the inertia of the base."""
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal, NoReturn, cast
 
+from rockflex.foundation.descriptions import PLAIN, WHOLE, Described, one_for_each
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, WHOLE, GroundSchema, SchemaKey, SpringBedSchema, one_for_each
-from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.foundation.schema import GroundSchema, SpringBedSchema
+from rockflex.structure._ground import (
+    BED_DAMPING,
+    END_RATIO,
+    END_ZONE,
+    NUMBER_OF_SPRINGS,
+    SOIL_DENSITY,
+    Ground,
+    Springs,
+    asce41_bed,
+    gazetas_bed,
+    winkler_bed,
+)
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import ground_under_structure
 from rockflex.studies._objects import function_document, object_document
 
 _EACH = one_for_each("spring")
-_DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
+_DAMPING_RATIO = Described("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
 
 
 class SpringsTable(TomlTable):
@@ -19,14 +32,14 @@ class SpringsTable(TomlTable):
 
     positions: Annotated[
         list[float] | None,
-        SchemaKey(
+        Described(
             "a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN
         ),
     ] = None
-    stiffness: Annotated[float | list[float], SchemaKey("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
+    stiffness: Annotated[float | list[float], Described("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
     damping: Annotated[
         float | list[float] | None,
-        SchemaKey("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
+        Described("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
     ] = None
     heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
 
@@ -44,23 +57,17 @@ class SpringsTable(TomlTable):
 class SpringBedTable(SpringBedSchema, TomlTable):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
 
-    damping: Annotated[
-        float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
-    ] = None
-    n: Annotated[int, SchemaKey("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
-    end_zone: Annotated[
-        float | None, SchemaKey("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
-    ] = None
-    end_ratio: Annotated[
-        float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
-    ] = None
+    damping: Annotated[float | None, BED_DAMPING] = None
+    n: Annotated[int, replace(NUMBER_OF_SPRINGS, form=WHOLE)] = 20
+    end_zone: Annotated[float | None, END_ZONE] = None
+    end_ratio: Annotated[float | None, END_RATIO] = None
     method: Annotated[
         Literal["asce41", "gazetas"] | None,
-        SchemaKey('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
+        Described('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
     ] = None
     density: Annotated[
         float | None,
-        SchemaKey("the density of the soil, for dashpots that radiate, with Gazetas", "kg/m³", low=1.0, high=1e4),
+        replace(SOIL_DENSITY, description=f"{SOIL_DENSITY.description}, with Gazetas"),
     ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
@@ -102,8 +109,8 @@ class SpringBedTable(SpringBedSchema, TomlTable):
 class GroundTable(GroundSchema, TomlTable):
     """The arguments of `Ground`, with springs or a bed as tables."""
 
-    springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
-    bed: Annotated[SpringBedTable | None, SchemaKey("a table", form=PLAIN)] = None
+    springs: Annotated[SpringsTable | None, Described("a table", form=PLAIN)] = None
+    bed: Annotated[SpringBedTable | None, Described("a table", form=PLAIN)] = None
 
     def under(self, properties: RockingProperties) -> Ground:
         """Return the ground under a structure."""

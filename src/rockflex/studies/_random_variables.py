@@ -14,8 +14,8 @@ import numpy as np
 from pydantic import model_validator
 
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, SchemaKey
 from rockflex.foundation.shown import shown
 from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
 
@@ -118,20 +118,20 @@ MAX_LOG_SPREAD = 10.0  # of a lognormal variable; draws then still span 70 power
 class DistributionTable(TomlTable):
     """The distribution of a variable: one of these keys."""
 
-    uniform: Annotated[list[float] | None, SchemaKey("a list of the smallest and the largest value", form=PLAIN)] = None
+    uniform: Annotated[list[float] | None, Described("a list of the smallest and the largest value", form=PLAIN)] = None
     log_uniform: Annotated[
         list[float] | None,
-        SchemaKey("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
+        Described("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
     ] = None
     whole: Annotated[
         list[int] | None,
-        SchemaKey("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN),
+        Described("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN),
     ] = None
-    normal: Annotated[list[float] | None, SchemaKey("a list of the mean and the standard deviation", form=PLAIN)] = None
+    normal: Annotated[list[float] | None, Described("a list of the mean and the standard deviation", form=PLAIN)] = None
     lognormal: Annotated[
-        list[float] | None, SchemaKey("a list of the median and the standard deviation of the logarithm", form=PLAIN)
+        list[float] | None, Described("a list of the median and the standard deviation of the logarithm", form=PLAIN)
     ] = None
-    one_of: Annotated[list[int | float] | None, SchemaKey("a list of equally likely values", form=PLAIN)] = None
+    one_of: Annotated[list[int | float] | None, Described("a list of equally likely values", form=PLAIN)] = None
 
     @model_validator(mode="after")
     def _one(self) -> "DistributionTable":

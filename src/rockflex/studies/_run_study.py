@@ -8,7 +8,7 @@ from rockflex.foundation.checks import checked_whole_number
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path
 from rockflex.foundation.shown import shown
-from rockflex.structure.file._structure_entry import read_toml_file
+from rockflex.structure.file._structure_file import read_toml_file
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._result_tables import tables_to_dataframe
 from rockflex.studies._run_plan import check_place, fill_folder, table_of_plan

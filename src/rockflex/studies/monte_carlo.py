@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import Field, InstanceOf, ValidatorFunctionWrapHandler, field_validator
 
 from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, SchemaKey
 from rockflex.motion._measures import scalable_measures
 from rockflex.motion._suite import Suite
 from rockflex.response._respond import MAX_OF_STORIES
@@ -47,8 +47,7 @@ from rockflex.studies._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.studies.cloud import Factors
 from rockflex.studies.spec import LimitKeys, RunsStudySpec
 
-ELEMENT_KEYS = ("tendons", "elements")
-LATER_KEYS = (*ELEMENT_KEYS, "stories")  # what may depend on the facts of the structure
+LATER_KEYS = ("elements", "stories")  # what may depend on the facts of the structure
 FACTS = {
     "weight": "the weight m_tot g of the structure in N",
     "weight_moment": "the moment m_tot g B of the weight in N m",
@@ -240,7 +239,7 @@ class MonteCarloStudy(LimitKeys, RunsStudySpec):
         description="a table of a structure, such as [structure.frame]"
     )
     ground: Annotated[  # pyright: ignore[reportIncompatibleVariableOverride]
-        dict[str, Any] | InstanceOf[Ground] | Callable[..., Any] | None, SchemaKey("a table", form=PLAIN)
+        dict[str, Any] | InstanceOf[Ground] | Callable[..., Any] | None, Described("a table", form=PLAIN)
     ] = None
     scales: Factors = Field([1.0])
     records_per_structure: int | None = Field(

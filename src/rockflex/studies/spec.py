@@ -4,7 +4,7 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import asdict, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast
 
 from pydantic import (
     AfterValidator,
@@ -17,16 +17,10 @@ from pydantic import (
     model_validator,
 )
 
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
-from rockflex.foundation.schema import (
-    IMPACT,
-    PLAIN,
-    BoucWenSchema,
-    ImpactSchema,
-    LawName,
-    SchemaKey,
-)
+from rockflex.foundation.schema import IMPACT, ImpactSchema, LawName
 from rockflex.foundation.shown import shown
 from rockflex.fragility._limit_states import check_limit_columns, limit_state_of
 from rockflex.models._bouc_wen import BoucWen
@@ -38,7 +32,7 @@ from rockflex.motion._suite import Selection, Suite, load_suite
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
-from rockflex.structure.file._toml_table import TomlTable, toml_problem_sentences
+from rockflex.structure.file._toml_table import TomlTable, table_of, toml_problem_sentences
 from rockflex.studies._arguments import (
     WORK_LIMIT,
     check_run_options,
@@ -157,8 +151,10 @@ _LAWS: dict[str, Callable[..., ImpactLaw]] = {
 }
 
 
-class BoucWenTable(BoucWenSchema, TomlTable):
-    """The arguments of `BoucWen`."""
+if TYPE_CHECKING:
+    BoucWenTable = TomlTable
+else:
+    BoucWenTable = table_of(BoucWen, TomlTable, __name__)
 
 
 class RunOptionKeys(ImpactSchema, TomlTable):
@@ -170,8 +166,8 @@ class RunOptionKeys(ImpactSchema, TomlTable):
     """
 
     impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
-    bouc_wen: Annotated[BoucWenTable | None, SchemaKey("a table", form=PLAIN)] = None
-    ground: Annotated[GroundTable | None, SchemaKey("a table", form=PLAIN)] = None
+    bouc_wen: Annotated[BoucWenTable | None, Described("a table", form=PLAIN)] = None
+    ground: Annotated[GroundTable | None, Described("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod

@@ -11,8 +11,9 @@ from pydantic.fields import FieldInfo
 from rockflex.foundation.json import as_json_value
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._outline import SYMBOLS
-from rockflex.structure.file._structure_entry import ELEMENTS, KINDS, StructureEntry
-from rockflex.structure.file._structure_tables import PartTable
+from rockflex.structure.file._element_tables import ELEMENTS
+from rockflex.structure.file._section_tables import PartTable
+from rockflex.structure.file._structure_entry import KINDS, StructureEntry
 from rockflex.structure.file._toml_table import (
     TomlTable,
     first_table_in_annotation,

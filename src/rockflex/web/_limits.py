@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex.foundation.schema import SchemaKey
+from rockflex.foundation.descriptions import Described
 from rockflex.foundation.shown import number_with_noun
 from rockflex.models._label import parse_model
 from rockflex.models._work import Task
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure.file._structure_entry import ELEMENTS, ElementTable
+from rockflex.structure.file._element_tables import ELEMENTS, ElementTable
 from rockflex.structure.file._toml_table import (
     TomlTable,
     first_table_in_annotation,
@@ -71,7 +71,7 @@ def form_number_errors(path: str, value: Any, table: type[TomlTable]) -> dict[st
         elif isinstance(each, list):
             errors[place] = f"it holds {len(each)} values, but the page takes {_most_values_of_list(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
-            key = SchemaKey("") if field is None else schema_key_of_field(field)
+            key = Described("") if field is None else schema_key_of_field(field)
             low, high = (-MAX_NUMBER if key.low is None else key.low), (MAX_NUMBER if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."

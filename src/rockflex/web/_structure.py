@@ -155,8 +155,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None, *, q
 
 def structure_outline_view(entry: StructureEntry, built: BuiltStructure, ground: Ground | None) -> dict[str, Any]:
     """Return the data of the drawing of a structure and of the ground under it."""
-    p, outline = built.properties, built.outline
-    drawn = outline.elements[len(entry.tendons) :]
+    p, outline, drawn = built.properties, built.outline, built.outline.elements
     points = np.concatenate([*(each.points for each in outline.strokes), *(ends for _, ends in drawn)])
     return {
         "kind": entry.kind,

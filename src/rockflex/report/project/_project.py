@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, cast
 
 from rockflex.foundation.archives import archive_bytes
 from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.descriptions import schema_keys
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path, write_given_file
 from rockflex.foundation.html import HtmlTable
 from rockflex.foundation.language import Language
-from rockflex.foundation.schema import ReportKeys, schema_keys
+from rockflex.foundation.schema import ReportKeys
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.units import Decimal, SystemName
 from rockflex.foundation.values import Value

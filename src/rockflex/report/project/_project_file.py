@@ -12,9 +12,9 @@ import numpy as np
 import tomli_w
 from pydantic import Field, TypeAdapter, ValidationError
 
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import unicode_text
-from rockflex.foundation.schema import PLAIN, SchemaKey
 from rockflex.foundation.shown import shortened, shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
@@ -51,9 +51,9 @@ _CLASSES: dict[str, type] = {
     for each in (BoucWen, CheckLimits, InitialState, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
 }
 _LAW_NAMES = {"VVELSimplified": "simplified", "VVELComplete": "complete", "Restitution": "restitution"}
-_TABLE = SchemaKey("a table", form=PLAIN)
-_NAME = SchemaKey("a name, in quotes", form=PLAIN)
-_FILE = SchemaKey("the name of a file in the project", form=PLAIN)
+_TABLE = Described("a table", form=PLAIN)
+_NAME = Described("a name, in quotes", form=PLAIN)
+_FILE = Described("the name of a file in the project", form=PLAIN)
 
 
 class StructureRow(TomlTable):
@@ -61,7 +61,7 @@ class StructureRow(TomlTable):
 
     name: Annotated[str, _NAME]
     file: Annotated[str, _FILE]
-    model: Annotated[str, SchemaKey("the label of a model", form=PLAIN)]
+    model: Annotated[str, Described("the label of a model", form=PLAIN)]
     bouc_wen: Annotated[dict[str, Any] | None, _TABLE] = None
     impact: Annotated[dict[str, Any] | None, _TABLE] = None
     ground: Annotated[dict[str, Any] | None, _TABLE] = None
@@ -73,28 +73,28 @@ class RecordRow(TomlTable):
 
     name: Annotated[str, _NAME]
     file: Annotated[str, _FILE]
-    dt: Annotated[float, SchemaKey("the step of the samples", "s")]
+    dt: Annotated[float, Described("the step of the samples", "s")]
     info: Annotated[dict[str, Any] | None, _TABLE] = None
 
 
 class ResultsRow(TomlTable):
     """Where results come from."""
 
-    inputs: Annotated[str, SchemaKey("the SHA-256 of what they were computed from", form=PLAIN)]
-    version: Annotated[str, SchemaKey("the version of rockflex", form=PLAIN)]
+    inputs: Annotated[str, Described("the SHA-256 of what they were computed from", form=PLAIN)]
+    version: Annotated[str, Described("the version of rockflex", form=PLAIN)]
 
 
 class ProjectDocument(TomlTable):
     """The content of project.toml."""
 
-    format: Annotated[str, SchemaKey(f'"{FORMAT}"', form=PLAIN)]
+    format: Annotated[str, Described(f'"{FORMAT}"', form=PLAIN)]
     head: Annotated[dict[str, str], _TABLE] = Field(default_factory=dict[str, str])
-    rule: Annotated[str | None, SchemaKey("a rule of simulate_set, in quotes", form=PLAIN)] = None
-    periods: Annotated[list[float] | None, SchemaKey("the smallest and the largest period in s", form=PLAIN)] = None
-    free_vibration: Annotated[float | str, SchemaKey('a number of seconds or "settle"', form=PLAIN)] = 0.0
+    rule: Annotated[str | None, Described("a rule of simulate_set, in quotes", form=PLAIN)] = None
+    periods: Annotated[list[float] | None, Described("the smallest and the largest period in s", form=PLAIN)] = None
+    free_vibration: Annotated[float | str, Described('a number of seconds or "settle"', form=PLAIN)] = 0.0
     limits: Annotated[dict[str, Any], _TABLE] = Field(default_factory=dict[str, Any])
-    structures: Annotated[list[StructureRow], SchemaKey("a list of tables [[structures]]", form=PLAIN)]
-    records: Annotated[list[RecordRow], SchemaKey("a list of tables [[records]]", form=PLAIN)]
+    structures: Annotated[list[StructureRow], Described("a list of tables [[structures]]", form=PLAIN)]
+    records: Annotated[list[RecordRow], Described("a list of tables [[records]]", form=PLAIN)]
     results: Annotated[ResultsRow | None, _TABLE] = None
 
 

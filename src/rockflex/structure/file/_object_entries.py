@@ -6,8 +6,9 @@ from typing import Any
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
+from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, arguments_in_table
-from rockflex.structure.file._structure_entry import ELEMENTS, KINDS
+from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_tables import PROFILES
 
 _WRAPPERS = ("Restrained", "Eccentric", "Leaning", "YieldingStories")

@@ -1,140 +1,32 @@
 """Tables of the kinds of structures: their keys, and how each is built."""
 
-import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 from pydantic import Field, StringConstraints
 
+from rockflex.foundation.descriptions import PLAIN, WHOLE, Described
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameSchema, Period, SchemaKey, one_for_each
+from rockflex.foundation.schema import DAMPING_RATIOS, BaseMass, HalfWidth
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
-from rockflex.structure._cross_section import Section
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Structure
 from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
 from rockflex.structure._wall_frame import WallFrame
-from rockflex.structure.file._toml_table import TomlTable
+from rockflex.structure.file._section_tables import SectionTable, section_argument
+from rockflex.structure.file._toml_table import TomlTable, table_of
 
-Shape = Literal["rectangle", "box", "circle", "tube"]
-_SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
-    "rectangle": (Section.rectangle, ("width", "depth")),
-    "box": (Section.box, ("width", "depth", "wall")),
-    "circle": (Section.circle, ("diameter",)),
-    "tube": (Section.tube, ("diameter", "wall")),
-}
-_SHAPES = ", ".join(f'"{shape}"' for shape in get_args(Shape))
-_WIDTH = SchemaKey("the width perpendicular to the plane of rocking", "m", low=1e-3, high=500.0)
-_DEPTH = SchemaKey("the depth in the plane of rocking", "m", low=1e-3, high=500.0)
-_DIAMETER = SchemaKey("the outer diameter", "m", low=1e-3, high=500.0)
-_WALL = SchemaKey("the thickness of the wall", "m", low=1e-4, high=100.0)
-_MODULUS = SchemaKey("Young's modulus of the material", "N/m²")
-_DENSITY = SchemaKey("the density of the material", "kg/m³", low=1.0, high=1e5)
-_FACTOR = SchemaKey("the effective over the uncracked bending stiffness", low=1e-3, high=1.0)
 Vector = list[float]
 Matrix = list[list[float]]
-HalfWidth = Annotated[float, SchemaKey("half the width of the base", "m", low=1e-3, high=1000.0)]
-Damping = Annotated[
-    float | Vector, SchemaKey("the fraction of critical damping", form=one_for_each("mode"), low=0.0, high=0.99)
-]
-Height = Annotated[float, SchemaKey("the height above the base", "m", low=0.01, high=2000.0)]
-Modes = Annotated[int, SchemaKey("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
+Damping = Annotated[float | Vector, DAMPING_RATIOS]
 PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
-_EACH_HEIGHT = one_for_each("height in z")
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
-
-
-class PartTable(TomlTable):
-    """A part of a composite section, and the place of its centroid."""
-
-    shape: Annotated[Shape, SchemaKey(f"one of {_SHAPES}", form=PLAIN)]
-    width: Annotated[float | None, _WIDTH] = None
-    depth: Annotated[float | None, _DEPTH] = None
-    diameter: Annotated[float | None, _DIAMETER] = None
-    wall: Annotated[float | None, _WALL] = None
-    elastic_modulus: Annotated[float, _MODULUS]
-    density: Annotated[float, _DENSITY]
-    stiffness_factor: Annotated[float, _FACTOR] = 1.0
-    offset: Annotated[
-        float, SchemaKey("the distance of its centroid from any axis common to all parts, along the depth", "m")
-    ] = 0.0
-
-
-class SectionTable(TomlTable):
-    """The arguments of one of the constructors of `Section`."""
-
-    shape: Annotated[
-        Literal[Shape, "composite"], SchemaKey(f'one of {_SHAPES} and "composite" (of several parts)', form=PLAIN)
-    ]
-    width: Annotated[float | None, _WIDTH] = None
-    depth: Annotated[float | None, _DEPTH] = None
-    diameter: Annotated[float | None, _DIAMETER] = None
-    wall: Annotated[float | None, _WALL] = None
-    elastic_modulus: Annotated[float | None, _MODULUS] = None
-    density: Annotated[float | None, _DENSITY] = None
-    stiffness_factor: Annotated[float, _FACTOR] = 1.0
-    parts: Annotated[
-        list[PartTable] | None, SchemaKey("a list of tables, one of each part of a composite section", form=PLAIN)
-    ] = None
-
-    def build(self) -> Section:
-        """Return the section.
-
-        Raises
-        ------
-        InputError
-            If a size is missing, does not belong to the shape, or is outside its range.
-        """
-        if self.shape != "composite":
-            return _section_of_shape(self.shape, self.model_dump(exclude={"shape"}, exclude_none=True))
-        given = self.model_dump(exclude={"shape", "parts", "stiffness_factor"}, exclude_none=True)
-        if given:
-            raise InputError(f"section: {next(iter(given))} belongs to each part of a composite one.", field="section")
-        found: list[tuple[Section, float]] = []
-        for place, part in enumerate(self.parts or [], start=1):
-            values = part.model_dump(exclude={"shape", "offset"}, exclude_none=True)
-            try:
-                found.append((_section_of_shape(part.shape, values), part.offset))
-            except InputError as error:
-                raise InputError(f"part no. {place} of the {error}", field="section") from error
-        return _with_section_in_errors(lambda: Section.composite(found, stiffness_factor=self.stiffness_factor))
-
-
-SectionKey = Annotated[
-    SectionTable | None, SchemaKey("the cross-section in place of bending stiffness and mass", form="a table of {}")
-]
-
-
-def section_argument(table: SectionTable | None) -> dict[str, Any]:
-    """Return the argument `section` of a structure; none without a table."""
-    return {} if table is None else {"section": table.build()}
-
-
-def _section_of_shape(shape: str, given: dict[str, Any]) -> Section:
-    make, sizes = _SIZES[shape]
-    needed = (*sizes, "elastic_modulus", "density")
-    lacking = [name for name in needed if name not in given]
-    other = [name for name in given if name not in (*needed, "stiffness_factor")]
-    if lacking or other:
-        wrong = f"but it lacks {', '.join(lacking)}" if lacking else f"not {', '.join(other)}"
-        raise InputError(
-            f"section: a {shape} takes {', '.join(needed)} and stiffness_factor, {wrong}.", field="section"
-        )
-    return _with_section_in_errors(lambda: make(**given))
-
-
-def _with_section_in_errors(make: Callable[[], Section]) -> Section:
-    """A message about an argument of a section says that it is one."""
-    try:
-        return make()
-    except InputError as error:
-        raise InputError(f"section: {error}", field="section") from error
-
 
 Built: TypeAlias = Structure | RockingProperties
 """The result of building a table."""
@@ -171,30 +63,8 @@ class StructureTable(TomlTable):
         return {}
 
 
-class FrameTable(FrameSchema, StructureTable):
-    """The arguments of `Frame`."""
-
-    makes = Frame
-    title = "Frame of equal stories"
-
-
-class LumpedStructureTable(StructureTable):
-    """The arguments of `LumpedStructure`."""
-
-    makes = LumpedStructure
-    title = "Lumped masses"
-
-    masses: Annotated[
-        Vector | Matrix, SchemaKey("a list of masses in kg, from the lowest up, or the mass matrix", "kg", form=PLAIN)
-    ]
-    stiffness: Annotated[Matrix, SchemaKey("the stiffness matrix in N/m, a list of rows", "N/m", form=PLAIN)]
-    heights: Annotated[
-        Vector,
-        SchemaKey("a list of the heights of the masses above the base in m, from the lowest up", "m", form=PLAIN),
-    ]
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
+FrameTable = table_of(Frame, StructureTable, __name__)
+LumpedStructureTable = table_of(LumpedStructure, StructureTable, __name__)
 
 
 class RockingPropertiesTable(StructureTable):
@@ -205,204 +75,78 @@ class RockingPropertiesTable(StructureTable):
 
     omega: Annotated[
         Vector,
-        SchemaKey(
+        Described(
             "a list of circular frequencies in rad/s, one a mode", "rad/s", form=PLAIN, low=1e-3, high=1e6, label="ω"
         ),
     ]
-    effective_mass: Annotated[Vector, SchemaKey("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
-    effective_height: Annotated[Vector, SchemaKey("a list of effective heights h*_n in m", "m", form=PLAIN)]
-    top_ordinate: Annotated[Vector, SchemaKey("a list of the top's displacement for a unit of each mode", form=PLAIN)]
-    i_theta: Annotated[float, SchemaKey("the moment of inertia about a pivot", "kg m²", label="I_θ")]
-    l0r: Annotated[float, SchemaKey("the sum of m_i h_i", "kg m", label="L₀ʳ")]
-    m_tot: Annotated[float, SchemaKey("the total mass with the base", "kg", label="Total mass")]
+    effective_mass: Annotated[Vector, Described("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
+    effective_height: Annotated[Vector, Described("a list of effective heights h*_n in m", "m", form=PLAIN)]
+    top_ordinate: Annotated[Vector, Described("a list of the top's displacement for a unit of each mode", form=PLAIN)]
+    i_theta: Annotated[float, Described("the moment of inertia about a pivot", "kg m²", label="I_θ")]
+    l0r: Annotated[float, Described("the sum of m_i h_i", "kg m", label="L₀ʳ")]
+    m_tot: Annotated[float, Described("the total mass with the base", "kg", label="Total mass")]
     half_width: HalfWidth
-    zeta: Annotated[
-        float | Vector,
-        SchemaKey(
-            "the fraction of critical damping", form=one_for_each("mode"), low=0.0, high=0.99, label="Damping ratio"
-        ),
-    ]
+    zeta: Annotated[float | Vector, replace(DAMPING_RATIOS, label="Damping ratio")]
     translational_inertia: Annotated[
-        float | None, SchemaKey("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
+        float | None, Described("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
     ] = None
     top_height: Annotated[
-        float | None, SchemaKey("the height of the top, for its total displacement, in m", "m", form=PLAIN)
+        float | None, Described("the height of the top, for its total displacement, in m", "m", form=PLAIN)
     ] = None
-    base_mass: Annotated[float | None, SchemaKey("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = (
+    base_mass: Annotated[float | None, Described("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = (
         None
     )
     leaning_mass: Annotated[
         float | None,
-        SchemaKey("the mass that stands on other columns, not in m_tot but in the modes", "kg", low=0.0, high=1e12),
+        Described("the mass that stands on other columns, not in m_tot but in the modes", "kg", low=0.0, high=1e12),
     ] = None
 
 
-class TaperedTowerTable(StructureTable):
-    """The arguments of `TaperedTower`."""
-
-    makes = TaperedTower
-    title = "Tapered tower"
-
-    height: Height
-    base_radius: Annotated[float, SchemaKey("the outer radius at the base, half its width", "m", low=1e-2, high=500.0)]
-    top_radius: Annotated[float, SchemaKey("the outer radius at the top", "m", low=1e-2, high=500.0)]
-    wall: Annotated[float, SchemaKey("the thickness of the wall", "m", low=1e-3, high=100.0)]
-    density: Annotated[float, SchemaKey("the density of the material", "kg/m³", low=1.0, high=1e5)]
-    elastic_modulus: Annotated[float, SchemaKey("Young's modulus of the material", "N/m²")]
-    damping_ratio: Damping
-    method: Annotated[
-        Literal["ritz", "fe"],
-        SchemaKey('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)', form=PLAIN),
-    ] = "ritz"
-    n_modes: Modes = 5
+TaperedTowerTable = table_of(TaperedTower, StructureTable, __name__)
 
 
-class CantileverTable(StructureTable):
-    """The arguments of `CantileverWithTipMass`."""
-
-    makes = CantileverWithTipMass
-    title = "Cantilever with a mass at its tip"
-
-    height: Annotated[float, SchemaKey("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
-    tip_mass: Annotated[float, SchemaKey("the mass of the body at the tip", "kg")]
-    bending_stiffness: Annotated[
-        float | None, SchemaKey("EI of the column (unless a section gives it)", "N m²", label="Bending stiffness")
-    ] = None
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
-    mass_per_length: Annotated[float, SchemaKey("the mass of the column per metre", "kg/m")] = 0.0
-    tip_inertia: Annotated[
-        float, SchemaKey("the rotary inertia of the body at the tip about its own axis", "kg m²")
-    ] = 0.0
-    n_modes: Annotated[int | None, SchemaKey("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = (
-        None
-    )
-    section: SectionKey = None
+class _SectionStructure(StructureTable):
+    """A structure that may have a cross-section."""
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with the section built."""
-        return super().arguments(folder) | section_argument(self.section)
+        return super().arguments(folder) | section_argument(getattr(self, "section", None))
 
 
-class WallFrameTable(StructureTable):
-    """The arguments of `WallFrame`."""
-
-    makes = WallFrame
-    title = "Wall and frame"
-
-    height: Height
-    mass: Annotated[float, SchemaKey("the mass of wall and frame together, without the base", "kg")]
-    stiffness_parameter: Annotated[
-        float,
-        SchemaKey(
-            "α = H √(GA/EI), a number from 0 (a wall alone: flexure) to inf (a frame alone: shear)",
-            form=PLAIN,
-            low=0.0,
-            high=math.inf,
-        ),
-    ]
-    base_mass: BaseMass
-    period: Period
-    aspect_ratio: AspectRatio
-    damping_ratio: Damping
-    n_modes: Modes = 5
+CantileverTable = table_of(CantileverWithTipMass, _SectionStructure, __name__, {"section": SectionTable | None})
 
 
-class FishBoneTable(StructureTable):
-    """The arguments of `FishBone`."""
-
-    makes = FishBone
-    title = "Frame of unequal stories"
-
-    story_heights: Annotated[
-        Vector,
-        SchemaKey("a list of the heights of the stories in m, from the base up", "m", form=PLAIN, low=0.1, high=100.0),
-    ]
-    masses: Annotated[float | Vector, SchemaKey("the mass of each floor in kg", "kg", form=one_for_each("story"))]
-    column_stiffness: Annotated[
-        float | Vector, SchemaKey("EI of all columns of a story together in N m²", "N m²", form=one_for_each("story"))
-    ]
-    beam_stiffness: Annotated[
-        float | Vector,
-        SchemaKey(
-            "the rotational stiffness of the beams of a floor in N m/rad (0: no beams, inf: rigid ones)",
-            "N m/rad",
-            form=one_for_each("story"),
-            high=math.inf,
-        ),
-    ]
-    base_mass: BaseMass
-    half_width: HalfWidth
-    damping_ratio: Damping
+WallFrameTable = table_of(WallFrame, StructureTable, __name__)
 
 
-class RigidBlockTable(StructureTable):
-    """The arguments of `rigid_block`."""
+FishBoneTable = table_of(FishBone, StructureTable, __name__)
 
-    makes = rigid_block
-    title = "Rigid block"
 
-    slenderness: Annotated[float, SchemaKey("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
-    half_diagonal: Annotated[float, SchemaKey("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
-    mass: Annotated[float, SchemaKey("the mass, which rotations do not depend on", "kg")] = 1.0
+RigidBlockTable = table_of(rigid_block, StructureTable, __name__)
 
 
 class LumpedMassesTable(TomlTable):
     """The arguments of `LumpedMasses`."""
 
-    heights: Annotated[Vector, SchemaKey("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
-    masses: Annotated[Vector, SchemaKey("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
+    heights: Annotated[Vector, Described("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
+    masses: Annotated[Vector, Described("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
     rotary: Annotated[
         Vector | None,
-        SchemaKey("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
+        Described("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
     ] = None
 
 
-class BeamTable(StructureTable):
+class _BeamStructure(StructureTable):
     """The arguments of `Beam`; a quantity that varies along the height has a value for each height in `z`."""
 
-    makes = Beam
-    title = "Beam, perhaps tapered"
-
-    height: Annotated[float, SchemaKey("the height of the beam above the base", "m", low=0.01, high=2000.0)]
     z: Annotated[
         Vector | None,
-        SchemaKey(
+        Described(
             "a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
             "m",
             form=PLAIN,
             label="Heights z",
         ),
-    ] = None
-    mass: Annotated[
-        float | Vector | None,
-        SchemaKey("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_EACH_HEIGHT),
-    ] = None
-    bending_stiffness: Annotated[
-        float | Vector | None, SchemaKey("EI in N m² (unless a section gives it)", "N m²", form=_EACH_HEIGHT)
-    ] = None
-    section: SectionKey = None
-    shear_stiffness: Annotated[
-        float | Vector | None, SchemaKey("GA_s in N (default: no deformation in shear)", "N", form=_EACH_HEIGHT)
-    ] = None
-    rotary_inertia: Annotated[
-        float | Vector | None, SchemaKey("ρI in kg m (default: none)", "kg m", form=_EACH_HEIGHT)
-    ] = None
-    lumped_masses: Annotated[LumpedMassesTable | None, SchemaKey("bodies", form="a table of {}")] = None
-    half_width: HalfWidth
-    damping_ratio: Damping
-    base_mass: BaseMass = 0.0
-    rotary_in_modes: Annotated[
-        bool, SchemaKey("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
-    ] = True
-    method: Annotated[
-        Literal["fe", "ritz"], SchemaKey('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
-    ] = "fe"
-    n_modes: Modes = 5
-    n_elements: Annotated[
-        int | None,
-        SchemaKey("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -421,9 +165,17 @@ class BeamTable(StructureTable):
                 field="z",
             )
         given |= {name: (z, given[name]) for name in lists}
-        if self.lumped_masses is not None:
+        if given.get("lumped_masses") is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
-        return given | section_argument(self.section)
+        return given | section_argument(getattr(self, "section", None))
+
+
+BeamTable = table_of(
+    Beam,
+    _BeamStructure,
+    __name__,
+    {"section": SectionTable | None, "lumped_masses": LumpedMassesTable | None},
+)
 
 
 class _MatrixFilesTable(StructureTable):
@@ -431,7 +183,7 @@ class _MatrixFilesTable(StructureTable):
 
     mass: Annotated[
         Vector | Matrix | str,
-        SchemaKey(
+        Described(
             "a list of masses in kg, or the mass matrix",
             "kg",
             form=_OR_FILE,
@@ -440,7 +192,7 @@ class _MatrixFilesTable(StructureTable):
     ]
     heights: Annotated[
         Vector | dict[Index, float] | str,
-        SchemaKey(
+        Described(
             "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } "
             "of those that move sideways, counted from 0",
             "m",
@@ -450,13 +202,13 @@ class _MatrixFilesTable(StructureTable):
         ),
     ]
     rotations: Annotated[
-        list[int], SchemaKey("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
+        list[int], Described("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
     ] = Field(default_factory=list[int])
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
     n_modes: Annotated[
-        int | None, SchemaKey("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
+        int | None, Described("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -479,7 +231,7 @@ class MatricesTable(_MatrixFilesTable):
 
     stiffness: Annotated[
         Matrix | str,
-        SchemaKey(
+        Described(
             "the stiffness matrix in N/m, a list of rows",
             "N/m",
             form=_OR_FILE,
@@ -496,7 +248,7 @@ class ModesTable(_MatrixFilesTable):
 
     omega: Annotated[
         Vector | str,
-        SchemaKey(
+        Described(
             "a list of circular frequencies in rad/s, one a mode",
             "rad/s",
             form=_OR_FILE,
@@ -508,9 +260,25 @@ class ModesTable(_MatrixFilesTable):
     ]
     shapes: Annotated[
         Matrix | str,
-        SchemaKey(
+        Described(
             "the mode shapes, a list of rows, one a freedom with a column for each mode",
             form=_OR_FILE,
             page="the mode shapes, a line for each freedom with a column for each mode",
         ),
     ]
+
+
+STRUCTURES: dict[str, type[StructureTable]] = {
+    "frame": FrameTable,
+    "fish_bone": FishBoneTable,
+    "wall_frame": WallFrameTable,
+    "tapered_tower": TaperedTowerTable,
+    "cantilever": CantileverTable,
+    "beam": BeamTable,
+    "lumped": LumpedStructureTable,
+    "matrices": MatricesTable,
+    "modes": ModesTable,
+    "properties": RockingPropertiesTable,
+    "block": RigidBlockTable,
+}
+"""The table of each kind of structure of this package by its name in a file."""

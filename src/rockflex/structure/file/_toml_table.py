@@ -1,16 +1,18 @@
 """A table of a TOML file, and the messages about one that is wrong."""
 
-from collections.abc import Mapping, Sequence
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from inspect import Parameter, signature, unwrap
 from types import GenericAlias, UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, ClassVar, SupportsIndex, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
+from rockflex.foundation.descriptions import FLAG, NUMBER, PLAIN, WHOLE, Described, described_arguments
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import PLAIN, SchemaKey
 from rockflex.foundation.shown import shown
 
 AnyTable = TypeVar("AnyTable", bound="TomlTable")
@@ -19,16 +21,64 @@ AnyTable = TypeVar("AnyTable", bound="TomlTable")
 class TomlTable(BaseModel):
     """A table of a file: known keys only, and no silent conversion.
 
-    Each field has a `SchemaKey` in its annotation, or a description that completes the sentence "it must be ...".
+    Each field has a `Described` in its annotation, or a description that completes the sentence "it must be ...".
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=True)
+    gone: ClassVar[Mapping[str, str]] = {}  # keys of earlier versions, and what to write in their place
 
 
-def schema_key_of_field(field: FieldInfo) -> SchemaKey:
+_FORMS = {
+    float: NUMBER,
+    int: WHOLE,
+    bool: FLAG,
+    str: "{}, a text in quotes",
+    list[float]: "{}, a list of numbers{unit}",
+}
+
+
+def table_of(
+    made: Callable[..., Any], base: type[AnyTable], module: str, kinds: Mapping[str, Any] | None = None, **more: Any
+) -> type[AnyTable]:
+    """Return the table of a class or function: its arguments are the keys, with what is known of them.
+
+    `module` is the name of the calling module, where pickle finds it; `kinds` are the types of arguments that are
+    tables in a file, and `more` are further fields, as of `pydantic.create_model`.
+    """
+    keys: dict[str, Any] = {}
+    parameters = dict(signature(made).parameters)
+    returned = get_type_hints(unwrap(made)).get("return")
+    hints = get_type_hints(made if isinstance(made, type) else unwrap(made))
+    for name, known in described_arguments(made).items():
+        if known.in_file is False:
+            continue
+        if name in parameters:
+            hint, default = hints[name], parameters[name].default
+        else:  # of **place: as the element that is returned has it
+            hint, default = get_type_hints(returned)[name], signature(returned).parameters[name].default  # pyright: ignore
+        kind = (kinds or {}).get(name) or known.in_file or _type_in_file(hint)
+        form = known.form or _FORMS.get(members_of_annotation(kind)[0], PLAIN)
+        keys[name] = Annotated[kind, replace(known, form=form)], ... if default is Parameter.empty else default
+    found: Any = create_model(f"{made.__name__}Table", __base__=base, __module__=module, **more, **keys)
+    setattr(sys.modules[module], found.__name__, found)
+    found.makes, found.title = made, getattr(made, "title", "") or made.__name__
+    found.tuples = tuple(name for name in keys if get_origin(hints.get(name)) is tuple)
+    return found
+
+
+def _type_in_file(hint: Any) -> Any:
+    """Return the type of a value in a file: lists for tuples, and whole numbers for what is one."""
+    if get_origin(hint) in (Union, UnionType):
+        return Union[tuple(map(_type_in_file, get_args(hint)))]  # noqa: UP007
+    if get_origin(hint) is tuple:
+        return list[get_args(hint)[0]]
+    return int if hint is SupportsIndex else hint
+
+
+def schema_key_of_field(field: FieldInfo) -> Described:
     """Return the key of a field; one without it has its description alone."""
     return next(
-        (part for part in field.metadata if isinstance(part, SchemaKey)), SchemaKey(field.description or "", form=PLAIN)
+        (part for part in field.metadata if isinstance(part, Described)), Described(field.description or "", form=PLAIN)
     )
 
 
@@ -93,7 +143,7 @@ def toml_problem_sentences(error: ValidationError, content: Mapping[str, Any], m
             table = spot.path[:-1]
             others = unknown.setdefault(table, [])
             others += [key] * (key not in others)
-            sentences[(*table, "")] = _unknown_key_sentence(table, others, list(known))
+            sentences[(*table, "")] = _unknown_key_sentence(table, others, spot.table)
             continue
         if problem["type"] == "value_error":  # raised by a check of the whole table
             said = str(problem["ctx"]["error"]) if "ctx" in problem else ""
@@ -109,11 +159,13 @@ def toml_problem_sentences(error: ValidationError, content: Mapping[str, Any], m
     return list(sentences.values())
 
 
-def _unknown_key_sentence(table: tuple[str | int, ...], keys: list[str], known: list[str]) -> str:
+def _unknown_key_sentence(table: tuple[str | int, ...], keys: list[str], model: type[TomlTable]) -> str:
+    known = list(model.model_fields)
     label = " ".join(filter(None, (_toml_table_heading(table), ", ".join(keys))))
     near = {key: found[0] for key in keys if (found := get_close_matches(key, known, n=1))}
     meant = [each if len(keys) == 1 else f"{each} for {key}" for key, each in near.items()]
-    hint = f" Did you mean {', '.join(meant)}?" if meant else ""
+    hint = "".join(f" {model.gone[key]}" for key in keys if key in model.gone)
+    hint = hint or (f" Did you mean {', '.join(meant)}?" if meant else "")
     return f"{label} {'is' if len(keys) == 1 else 'are'} not known; there are {', '.join(known)}.{hint}"
 
 
