@@ -11,7 +11,8 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.values import Value
-from rockflex.structure._rocking import SUM_TOLERANCE, RockingProperties
+from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._rocking_checks import SUM_TOLERANCE
 from rockflex.structure._uplifted import lowest_uplifted_frequencies
 
 

@@ -1,7 +1,7 @@
 """Tendons, yielding dissipators, viscous and friction dampers: under the base, between floors or from a height."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -228,7 +228,10 @@ def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
     InputError
         If something is not an element.
     """
-    items: tuple[Any, ...] = tuple(given) if isinstance(given, Iterable) else (given,)
+    try:
+        items: tuple[Any, ...] = tuple(given)
+    except TypeError:
+        items = (given,)
     for item in items:
         if not isinstance(item, BaseElement):
             raise InputError(

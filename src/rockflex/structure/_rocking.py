@@ -1,32 +1,29 @@
-"""The parameters of a flexible rocking structure, and checks that they are physically possible."""
+"""The parameters of a flexible rocking structure."""
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import SupportsIndex
+from typing import Annotated, ClassVar, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
-    check_all_positive,
     checked_damping_ratios,
-    checked_finite,
-    checked_finite_vector,
-    checked_instance,
     checked_magnitude,
     checked_positive,
     checked_whole_number,
 )
 from rockflex.foundation.constants import GRAVITY
-from rockflex.foundation.errors import InputError
+from rockflex.foundation.descriptions import PLAIN, Described, described
 from rockflex.foundation.html import HtmlTable
 from rockflex.foundation.overflow import explaining_overflow
+from rockflex.foundation.schema import DAMPING_RATIOS, HalfWidth
 from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.structure._analysis import FloorModes
-from rockflex.structure._attachment import Attachment, YieldingStory
+from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._elements import (
     BaseElement,
     Tendon,
@@ -36,251 +33,27 @@ from rockflex.structure._elements import (
     element_pushover_force,
     initial_force,
 )
-from rockflex.structure._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side, pivot_inertia
-
-SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
-PRINTED_TOLERANCE = 1e-5  # of I_θ: tolerance for values printed to six digits
-
-
-def checked_modal_values(
-    omega: ArrayLike, effective_mass: ArrayLike, effective_height: ArrayLike, top_ordinate: ArrayLike
-) -> dict[str, Array]:
-    modes = {
-        "omega": checked_finite_vector("omega", omega, "rad/s"),
-        "effective_mass": checked_finite_vector("effective_mass", effective_mass, "kg"),
-        "effective_height": checked_finite_vector("effective_height", effective_height, "m"),
-        "top_ordinate": checked_finite_vector("top_ordinate", top_ordinate, "m/m"),
-    }
-    omega, effective_mass = modes["omega"], modes["effective_mass"]
-    for name, values in modes.items():
-        if values.size != omega.size:
-            raise InputError(
-                f"{name} must contain one value per mode, as omega does ({omega.size}), but {values.size} were given.",
-                field=name,
-            )
-    for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
-        check_all_positive(name, values, unit, "Leave out modes that do not participate.")
-    falls = np.flatnonzero(omega[1:] < omega[:-1])
-    if falls.size:
-        i = int(falls[0])
-        raise InputError(
-            f"omega must be in ascending order, but omega[{i + 1}] = {omega[i + 1]:g} rad/s is below "
-            f"omega[{i}] = {omega[i]:g} rad/s. Sort the modes by frequency.",
-            field="omega",
-        )
-    return modes
+from rockflex.structure._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side
+from rockflex.structure._rocking_checks import (
+    SUM_TOLERANCE,
+    checked_base_mass,
+    checked_eccentricity,
+    checked_floor_modes,
+    checked_modal_values,
+    checked_stories,
+    checked_top_height,
+    checked_translational_inertia,
+    elements_in_place,
+)
 
 
-def checked_rocking_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
-    return {
-        "i_theta": checked_positive("i_theta", i_theta, "kg m²"),
-        "l0r": checked_positive("l0r", l0r, "kg m"),
-        "m_tot": checked_positive("m_tot", m_tot, "kg"),
-        "half_width": checked_positive("half_width", half_width, "m"),
-    }
-
-
-def checked_floor_modes(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
-    if floors is not None and checked_instance("floors", floors, FloorModes).n_modes != n_modes:
-        raise InputError(
-            f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
-        )
-    return floors
-
-
-@explaining_overflow("The inertia of the structure on this eccentric base")
-def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], inertia: float, given: float) -> float:
-    e, b = checked_finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
-    if not abs(e) < b:
-        raise InputError(
-            f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is the "
-            "distance of the axis of the masses to the right of the middle of the base; check the units too.",
-            field="eccentricity",
-        )
-    modal_inertia = float(modes["effective_mass"] @ modes["effective_height"] ** 2)
-    nearer = pivot_inertia(abs(e), b, scalars["i_theta"], inertia, scalars["m_tot"])
-    if nearer <= modal_inertia:
-        raise InputError(
-            f"eccentricity must leave rotational inertia about the nearer pivot, but with {e:.9g} m and half_width = "
-            f"{b:.9g} m only the {modal_inertia:.9g} kg m² of the modes are left. Move the axis of the masses further "
-            "from the edge of the base.",
-            field="eccentricity",
-        )
-    return e
-
-
-def elements_in_place(
-    elements: tuple[BaseElement, ...], half_width: float, eccentricity: float, floors: FloorModes | None, n_modes: int
-) -> tuple[BaseElement, ...]:
-    limit = half_width + abs(eccentricity)  # on an eccentric base, outriggers may reach as far on the shorter side
-    for element in elements:
-        if element.attached:
-            check_floors_of(element, floors, n_modes)
-        if abs(element.position) > limit * (1.0 + SUM_TOLERANCE):
-            what = "half_width" if eccentricity == 0.0 else "half_width + |eccentricity|"
-            raise InputError(
-                f"Elements must act within {what} = {limit:g} m to each side of the axis of the masses, but a "
-                f"{type(element).__name__} is at {element.position:g} m.",
-                field="elements",
-            )
-    return elements
-
-
-def check_floors_of(element: Attachment, floors: FloorModes | None, n_modes: int) -> None:
-    """Check that a structure has the floors to which an element is attached; a rigid block has any."""
-    name, field_ = type(element).__name__, "between" if element.between else "height"
-    if n_modes == 0:
-        return
-    if floors is None:
-        raise InputError(
-            f"A {name} with {field_} = {getattr(element, field_)} needs floors, but this structure has none. Give "
-            "RockingProperties the floors (FloorModes), or use a structure with floors, such as a Frame.",
-            field=field_,
-        )
-    count, top = floors.heights.size, float(floors.heights.max())
-    if element.between is not None and max(element.between) > count:
-        raise InputError(
-            f"between must be floors from 0, the base, to {count}, but a {name} is between {element.between}.",
-            field="between",
-        )
-    if element.height is not None and element.height > top * (1.0 + SUM_TOLERANCE):
-        raise InputError(
-            f"height must be at most that of the top, {top:g} m, but a {name} is at {element.height:g} m.",
-            field="height",
-        )
-
-
-def checked_stories(
-    given: Iterable[YieldingStory], floors: FloorModes | None, n_modes: int
-) -> tuple[YieldingStory, ...]:
-    stories = tuple(given) if n_modes else ()
-    for each in stories:
-        floor = checked_instance("stories", each, YieldingStory).floor
-        if floors is None or floor > floors.heights.size:
-            known = "none" if floors is None else f"{floors.heights.size}"
-            raise InputError(
-                f"stories: story {floor} yields, but the structure has {known}. Give RockingProperties the floors "
-                "(FloorModes) with it.",
-                field="stories",
-            )
-    return stories
-
-
-def checked_top_height(floors: FloorModes | None, given: float | None) -> float | None:
-    if given is not None:
-        return checked_positive("top_height", given, "m")
-    return None if floors is None else float(floors.heights.max())
-
-
-def checked_base_mass(modes: dict[str, Array], moved: float, inertia: float, given: float | None) -> float | None:
-    mass = modes["effective_mass"]
-    modal_mass = float(mass.sum())
-    if given is not None:
-        base = checked_positive("base_mass", given, "kg", zero=True)
-        if moved - base < modal_mass - SUM_TOLERANCE * moved:
-            raise InputError(
-                f"base_mass must leave the effective mass of the modes, {modal_mass:.9g} kg, but {base:.9g} kg of "
-                f"m_tot = {moved:.9g} kg was given.",
-                field="base_mass",
-            )
-        return base
-    complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - SUM_TOLERANCE) * inertia
-    return max(moved - modal_mass, 0.0) if complete else None
-
-
-@explaining_overflow("The inertia of the modes, from effective_mass and effective_height,")
-def checked_translational_inertia(
-    modes: dict[str, Array], scalars: dict[str, float], leaning_mass: float, given: float | None
-) -> float:
-    mass = modes["effective_mass"]
-    modal_mass = float(mass.sum())
-    modal_inertia = float(mass @ modes["effective_height"] ** 2)
-    i_theta, m_tot = scalars["i_theta"], scalars["m_tot"]
-    if m_tot + leaning_mass < modal_mass * (1.0 - SUM_TOLERANCE):
-        raise InputError(
-            f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
-            "given. It is the mass of the whole structure including its base; check the units too.",
-            field="m_tot",
-        )
-    if i_theta <= modal_inertia:
-        raise InputError(
-            "i_theta must exceed the sum of effective_mass * effective_height**2, "
-            f"{modal_inertia:.9g} kg m², but {i_theta:.9g} kg m² was given: no inertia is left for the rotation. "
-            "It refers to a pivot and includes the base; check the units too.",
-            field="i_theta",
-        )
-    source = "i_theta - m_tot * half_width**2, its default," if given is None else "the given value"
-    if given is None:
-        inertia = i_theta - m_tot * scalars["half_width"] ** 2
-    else:
-        inertia = checked_positive("translational_inertia", given, "kg m²")
-    if not modal_inertia * (1.0 - SUM_TOLERANCE) <= inertia < i_theta:
-        raise InputError(
-            "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
-            f"{modal_inertia:.9g} kg m², and below i_theta, {i_theta:.9g} kg m², but {source} is "
-            f"{inertia:.9g} kg m². Give the sum of m_i h_i² over the masses above the base.",
-            field="translational_inertia",
-        )
-    least = inertia + m_tot * scalars["half_width"] ** 2
-    if i_theta < least * (1.0 - PRINTED_TOLERANCE):
-        raise InputError(
-            "i_theta must be at least translational_inertia + m_tot * half_width**2, "
-            f"{least:.9g} kg m², but {i_theta:.9g} kg m² was given. It refers to a pivot, so it changes with the "
-            "base: properties.with_half_width(B) gives the same structure on another base.",
-            field="i_theta",
-        )
-    return max(inertia, modal_inertia)
-
-
+@described
 @dataclass(frozen=True, eq=False, init=False)
 class RockingProperties(HtmlTable, Value):
     """The parameters of a rocking structure with n modes (Silva & Stojadinović 2024, Table 2).
 
     They describe any structure, and can be entered by hand from the output of any finite element program. Without modes
     they describe a rigid block. Sequences become read-only arrays.
-
-    Attributes
-    ----------
-    omega : ndarray, shape (n,)
-        Circular frequencies ω_n on a fixed base in rad/s, in ascending order.
-    effective_mass : ndarray, shape (n,)
-        m*_n in kg, positive.
-    effective_height : ndarray, shape (n,)
-        h*_n in m, of either sign.
-    top_ordinate : ndarray, shape (n,)
-        Γ_n φ_top,n: displacement of the top per unit of D_n, dimensionless; u_top = Σ_n Γ_n φ_top,n D_n.
-    i_theta : float
-        I_θ in kg m²: moment of inertia about a pivot, including the base mass; above Σ_n m*_n h*_n², and at least
-        `translational_inertia` + m_tot B². For an eccentric base, too, it refers to a pivot at the distance B from the
-        axis of the masses; `pivot` gives the inertia about the actual pivots.
-    l0r : float
-        L_0^r = Σ_i m_i h_i in kg m.
-    m_tot : float
-        Total mass in kg that stands on the base, with the base; with `leaning_mass` at least Σ_n m*_n.
-    half_width : float
-        B in m, positive and finite. For a base that cannot lift, choose a fixed-base model instead of a large B.
-    zeta : ndarray, shape (n,)
-        Modal damping ratios in [0, 1); a single number applies to all modes.
-    translational_inertia : float
-        Σ_i m_i h_i² in kg m², needed by Eqs. 19 and 29; from Σ_n m*_n h*_n² to I_θ - m_tot B². The latter is the
-        default and exact for lumped masses without rotary inertia.
-    floors : FloorModes or None
-        Floor displacements and forces of the same n modes, for floor quantities.
-    top_height : float or None
-        Height in m of the top above the base. Default: the highest floor. If None, there is no total top displacement.
-    base_mass : float or None
-        Mass m_0 of the base in kg. Default: `m_tot` minus the effective mass of all modes; None if modes are missing.
-    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
-        Elements between the base and the ground, at most B + |e| from the axis of the masses, and elements between
-        floors or from a height to the ground, which need `floors`; see `Attachment`.
-    eccentricity : float
-        e in m, smaller than B in magnitude: distance of the vertical axis of the masses to the right of the middle of
-        the base. The pivots are B - e to the right and B + e to the left of this axis.
-    stories : tuple of YieldingStory
-        Stories that yield, which need the `floors`; see `YieldingStories`. None by default.
-    leaning_mass : float
-        Σ l_i in kg, zero by default: mass that moves with the floors and stands on other columns, which are hinged; see
-        `Leaning`. It is in the modes, in L_0^r and in Σ m_i h_i², but not in `m_tot`, so not in M_r.
 
     Raises
     ------
@@ -298,23 +71,143 @@ class RockingProperties(HtmlTable, Value):
     3060720
     """
 
-    omega: Array
-    effective_mass: Array
-    effective_height: Array
-    top_ordinate: Array
-    i_theta: float
-    l0r: float
-    m_tot: float
-    half_width: float
-    zeta: Array
-    translational_inertia: float
-    floors: FloorModes | None = field(repr=False)
-    elements: tuple[BaseElement, ...]
-    top_height: float | None
-    base_mass: float | None
-    eccentricity: float
-    leaning_mass: float
-    stories: tuple[YieldingStory, ...]
+    title: ClassVar[str] = "Rocking parameters"
+
+    omega: Annotated[
+        Array,
+        Described(
+            "a list of circular frequencies in rad/s, one a mode",
+            "rad/s",
+            form=PLAIN,
+            in_file=list[float],
+            note="On a fixed base, in ascending order.",
+            low=1e-3,
+            high=1e6,
+            label="ω",
+        ),
+    ]
+    effective_mass: Annotated[
+        Array,
+        Described(
+            "a list of effective masses m*_n in kg", "kg", form=PLAIN, in_file=list[float], note="They are positive."
+        ),
+    ]
+    effective_height: Annotated[
+        Array,
+        Described(
+            "a list of effective heights h*_n in m", "m", form=PLAIN, in_file=list[float], note="They have either sign."
+        ),
+    ]
+    top_ordinate: Annotated[
+        Array,
+        Described(
+            "a list of the top's displacement for a unit of each mode",
+            form=PLAIN,
+            in_file=list[float],
+            note="Γ_n φ_top,n, dimensionless: u_top = Σ_n Γ_n φ_top,n D_n.",
+        ),
+    ]
+    i_theta: Annotated[
+        float,
+        Described(
+            "the moment of inertia about a pivot",
+            "kg m²",
+            rule="positive",
+            note="With the base; above Σ_n m*_n h*_n², and at least `translational_inertia` + m_tot B². For an "
+            "eccentric base, too, it refers to a pivot at the distance B from the axis of the masses; `pivot` gives "
+            "the inertia about the actual pivots.",
+            label="I_θ",
+        ),
+    ]
+    l0r: Annotated[float, Described("the sum of m_i h_i", "kg m", rule="positive", label="L₀ʳ")]
+    m_tot: Annotated[
+        float,
+        Described(
+            "the total mass with the base",
+            "kg",
+            rule="positive",
+            note="Of what stands on the base; with `leaning_mass` at least Σ_n m*_n.",
+            label="Total mass",
+        ),
+    ]
+    half_width: HalfWidth
+    zeta: Annotated[Array, replace(DAMPING_RATIOS, label="Damping ratio")]
+    translational_inertia: Annotated[
+        float,
+        Described(
+            "the sum of m_i h_i² (default: i_theta - m_tot half_width²)",
+            "kg m²",
+            rule="positive",
+            in_file=float | None,
+            note="Needed by Eqs. 19 and 29; at least Σ_n m*_n h*_n². The default is exact for lumped masses without "
+            "rotary inertia.",
+        ),
+    ]
+    floors: Annotated[
+        FloorModes | None,
+        Described(
+            "displacements and forces of the floors",
+            in_file=False,
+            note="Of the same modes, for quantities of floors.",
+        ),
+    ] = field(repr=False)
+    elements: Annotated[
+        tuple[BaseElement, ...],
+        Described(
+            "elements that hold the structure",
+            in_file=False,
+            note="Between the base and the ground, at most B + |e| from the axis of the masses, or between floors or "
+            "from a height to the ground, which need `floors`; see `Attachment`.",
+        ),
+    ]
+    top_height: Annotated[
+        float | None,
+        Described(
+            "the height of the top, for its total displacement, in m",
+            "m",
+            rule="positive",
+            form=PLAIN,
+            note="Default: the highest floor. If None, there is no total top displacement.",
+        ),
+    ]
+    base_mass: Annotated[
+        float | None,
+        Described(
+            "the mass of the base, a part of m_tot",
+            "kg",
+            rule="zero or positive",
+            note="Default: `m_tot` minus the effective mass of all modes; None if modes are missing.",
+            low=0.0,
+            high=1e12,
+        ),
+    ]
+    eccentricity: Annotated[
+        float,
+        Described(
+            "the distance of the axis of the masses to the right of the middle of the base",
+            "m",
+            rule="finite",
+            in_file=False,
+            note="e, smaller than B in magnitude: the pivots are B - e to the right and B + e to the left of it.",
+        ),
+    ]
+    leaning_mass: Annotated[
+        float,
+        Described(
+            "the mass that stands on other columns, not in m_tot but in the modes",
+            "kg",
+            rule="zero or positive",
+            in_file=float | None,
+            note="Σ l_i, which moves with the floors on columns that are hinged; see `Leaning`. It is in L_0^r and in "
+            "Σ m_i h_i², but not in M_r.",
+            low=0.0,
+            high=1e12,
+        ),
+    ]
+    stories: Annotated[
+        tuple[YieldingStory, ...],
+        Described("stories that yield", in_file=False, note="They need the `floors`; see `YieldingStories`."),
+    ]
 
     def __init__(
         self,
@@ -337,9 +230,8 @@ class RockingProperties(HtmlTable, Value):
         stories: Iterable[YieldingStory] = (),
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
-        scalars = checked_rocking_scalars(i_theta, l0r, m_tot, half_width)
-        leaning = checked_positive("leaning_mass", leaning_mass, "kg", zero=True)
-        inertia = checked_translational_inertia(modes, scalars, leaning, translational_inertia)
+        scalars = {"i_theta": i_theta, "l0r": l0r, "m_tot": m_tot, "half_width": half_width}
+        inertia = checked_translational_inertia(modes, scalars, leaning_mass, translational_inertia)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         vars(self).update(
             modes,
@@ -351,9 +243,9 @@ class RockingProperties(HtmlTable, Value):
                 base_element_tuple(elements), scalars["half_width"], e, floors, modes["omega"].size
             ),
             top_height=checked_top_height(floors, top_height),
-            base_mass=checked_base_mass(modes, scalars["m_tot"] + leaning, inertia, base_mass),
+            base_mass=checked_base_mass(modes, m_tot + leaning_mass, inertia, base_mass),
             eccentricity=e,
-            leaning_mass=leaning,
+            leaning_mass=leaning_mass,
             stories=checked_stories(stories, floors, modes["omega"].size),
         )
 

@@ -1,7 +1,6 @@
 """Tables of the kinds of structures: their keys, and how each is built."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeAlias
 
@@ -67,39 +66,7 @@ FrameTable = table_of(Frame, StructureTable, __name__)
 LumpedStructureTable = table_of(LumpedStructure, StructureTable, __name__)
 
 
-class RockingPropertiesTable(StructureTable):
-    """The arguments of `RockingProperties`, without its floors."""
-
-    makes = RockingProperties
-    title = "Rocking parameters"
-
-    omega: Annotated[
-        Vector,
-        Described(
-            "a list of circular frequencies in rad/s, one a mode", "rad/s", form=PLAIN, low=1e-3, high=1e6, label="ω"
-        ),
-    ]
-    effective_mass: Annotated[Vector, Described("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
-    effective_height: Annotated[Vector, Described("a list of effective heights h*_n in m", "m", form=PLAIN)]
-    top_ordinate: Annotated[Vector, Described("a list of the top's displacement for a unit of each mode", form=PLAIN)]
-    i_theta: Annotated[float, Described("the moment of inertia about a pivot", "kg m²", label="I_θ")]
-    l0r: Annotated[float, Described("the sum of m_i h_i", "kg m", label="L₀ʳ")]
-    m_tot: Annotated[float, Described("the total mass with the base", "kg", label="Total mass")]
-    half_width: HalfWidth
-    zeta: Annotated[float | Vector, replace(DAMPING_RATIOS, label="Damping ratio")]
-    translational_inertia: Annotated[
-        float | None, Described("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
-    ] = None
-    top_height: Annotated[
-        float | None, Described("the height of the top, for its total displacement, in m", "m", form=PLAIN)
-    ] = None
-    base_mass: Annotated[float | None, Described("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = (
-        None
-    )
-    leaning_mass: Annotated[
-        float | None,
-        Described("the mass that stands on other columns, not in m_tot but in the modes", "kg", low=0.0, high=1e12),
-    ] = None
+RockingPropertiesTable = table_of(RockingProperties, StructureTable, __name__)
 
 
 TaperedTowerTable = table_of(TaperedTower, StructureTable, __name__)
