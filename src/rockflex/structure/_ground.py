@@ -22,6 +22,7 @@ from rockflex.foundation.checks import (
 )
 from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.schema import BREADTH, POISSON_RATIO, SHEAR_MODULUS, SUBGRADE_MODULUS, HalfWidth
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
@@ -365,10 +366,11 @@ def winkler_bed(
         "end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them."
     )
     count = checked_whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
-    edges = _spring_strip_edges(B, zone, count)
-    middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
-    stiffness = subgrade_modulus * breadth * widths * np.where(np.abs(middles) > B - zone, end_ratio, 1.0)
-    return Springs(middles - shift, stiffness, damping * stiffness / stiffness.sum(), breadth * widths)
+    with explaining_overflow(f"A bed of springs {2.0 * B:g} m wide"):
+        edges = _spring_strip_edges(B, zone, count)
+        middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
+        stiffness = subgrade_modulus * breadth * widths * np.where(np.abs(middles) > B - zone, end_ratio, 1.0)
+        return Springs(middles - shift, stiffness, damping * stiffness / stiffness.sum(), breadth * widths)
 
 
 @described
