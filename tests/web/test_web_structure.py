@@ -73,21 +73,6 @@ def test_the_page_takes_twenty_elements() -> None:
                             "but 'x' was given."}  # fmt: skip
 
 
-def test_tendons_of_older_links_are_the_first_elements() -> None:
-    old = parse_page_state({"structure": BARE | {"tendons": [TENDON], "elements": [FUSE]}})
-    assert old == parse_page_state(state({"kind": "tendon", **TENDON}, FUSE))
-    built = StructureEntry.model_validate(BARE | {"elements": [{"kind": "tendon", **TENDON}, FUSE]}).build()
-    assert old.structure.build().rocking().elements == built.rocking().elements
-    empty = parse_page_state({"structure": BARE | {"tendons": []}})
-    assert empty.structure.elements is None
-    with pytest.raises(Refusal) as caught:
-        parse_page_state({"structure": BARE | {"tendons": "two"}})
-    assert "structure.tendons" in caught.value.errors
-    with pytest.raises(Refusal) as caught:
-        parse_page_state({"structure": BARE | {"tendons": [TENDON], "elements": 3}})
-    assert "it must be a list of tables" in caught.value.errors["structure.elements"]
-
-
 def test_the_numbers_of_elements_are_the_librarys(client, pier_run) -> None:
     run = pier_run
     asked = client.state(structure=PIER, scale=2.0, models=["fixed", "MDOF-S"])

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import fields
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
+from pydantic import AfterValidator, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 
 from rockflex.foundation.errors import InputError
@@ -230,7 +230,6 @@ class CloudChoice(TomlTable):
         0.9,
         ge=0.5,
         le=0.99,
-        validation_alias=AliasChoices("confidence", "level"),  # the key of older links
         description="the confidence of the bands, from 0.5 to 0.99",
     )
 
@@ -361,7 +360,6 @@ def parse_page_state(content: Any) -> PageState:
             raise Refusal(
                 f"The link holds more than {MAX_STATE_VALUES} values, which is more than the page takes.", 413
             )
-        content = _state_with_tendons_as_elements(content)
         state = PageState.model_validate(_with_infinite_numbers(content))
     except ValidationError as error:
         structure = _with_infinite_numbers(content.get("structure"))
@@ -433,20 +431,6 @@ def _number_of_values(value: Any) -> int:
     if isinstance(value, dict):
         return 1 + sum(map(_number_of_values, value.values()))
     return 1 + sum(map(_number_of_values, value)) if isinstance(value, list) else 1
-
-
-def _state_with_tendons_as_elements(content: dict[str, Any]) -> dict[str, Any]:
-    """Return a state whose tendons are among its elements; older links have a list of them."""
-    structure = content.get("structure")
-    if not isinstance(structure, dict) or not isinstance(structure.get("tendons"), list):
-        return content
-    rest = {key: value for key, value in structure.items() if key != "tendons"}
-    tendons = [{"kind": "tendon", **each} if isinstance(each, dict) else each for each in structure["tendons"]]
-    others = structure.get("elements")
-    if others is None or isinstance(others, list):
-        elements = [*tendons, *(others or [])]
-        rest |= {"elements": elements} if elements else {}
-    return content | {"structure": rest}
 
 
 def _with_infinite_numbers(value: Any) -> Any:
