@@ -22,6 +22,7 @@ from rockflex.foundation.checks import (
 )
 from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.schema import BREADTH, POISSON_RATIO, SHEAR_MODULUS, SUBGRADE_MODULUS, HalfWidth
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
@@ -326,6 +327,7 @@ _Shift = Annotated[
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def winkler_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
@@ -372,6 +374,7 @@ def winkler_bed(
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def asce41_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
@@ -427,6 +430,7 @@ def asce41_bed(
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def gazetas_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
