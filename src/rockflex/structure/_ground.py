@@ -327,6 +327,7 @@ _Shift = Annotated[
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def winkler_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
@@ -374,6 +375,7 @@ def winkler_bed(
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def asce41_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
@@ -429,6 +431,7 @@ def asce41_bed(
 
 
 @described
+@explaining_overflow("A bed of springs of this size and stiffness")
 def gazetas_bed(
     half_width: HalfWidth,
     breadth: Annotated[float, BREADTH],
