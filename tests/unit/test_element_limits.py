@@ -1,5 +1,6 @@
 """Limits of controlled rocking that are known without any computation, and the damped rigid block in closed form."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -125,9 +126,7 @@ def test_the_damped_rigid_block_in_closed_form():
 
 
 def values_of(properties):
-    return {name: getattr(properties, name) for name in type(properties).__dataclass_fields__ if name != "zeta"} | {
-        "zeta": 0.0
-    }
+    return {each.name: getattr(properties, each.name) for each in dataclasses.fields(properties)} | {"zeta": 0.0}
 
 
 def test_friction_of_a_yielding_structure_that_never_yields_is_that_of_an_elastic_one():

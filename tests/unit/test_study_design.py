@@ -162,7 +162,7 @@ def test_a_specification_that_is_wrong(changes, message):
         ),
         ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "B = 9 m, none: limit must be a rotation from 0.0001 rad"),
         ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "but '2.5 nominal' (1.62 rad) was given."),
-        ({"base_mass_per_width": 1e6}, "B = 0.8 m, none: m_tot must be at least the sum of effective_mass,"),
+        ({"base_mass_per_width": 1e6}, "B = 0.8 m, none: base_mass must be a zero or positive, finite number in kg"),
         (SPECTRAL, "The fragility is in a spectral measure at a damping ratio of 0.02, but the hazard curve is at a"),
         (SPECTRAL | SEARCHED, "The fragility is in a spectral measure at a damping ratio of 0.02,"),
     ],
