@@ -6,7 +6,7 @@ zero means full contact; otherwise rocking continues to the side given by its si
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Protocol, runtime_checkable
+from typing import Annotated, Any, Protocol, runtime_checkable
 
 from numpy.typing import ArrayLike
 
@@ -203,6 +203,17 @@ class UnsavedLaw:
         """
         del properties, modal_velocity, rotation_velocity
         raise InputError(f"The impact law {self.description} was not saved with the response. Pass the law itself.")
+
+
+LAWS: dict[str, type[VVELSimplified | VVELComplete | Restitution]] = {
+    "simplified": VVELSimplified,
+    "complete": VVELComplete,
+    "restitution": Restitution,
+}
+"""The laws of the package by their names in files, flags and forms."""
+
+LAW_CLASSES: dict[str, Any] = {each.__name__: each for each in (*LAWS.values(), SidedRestitution)}
+"""All laws of the package by the names of their classes; they cannot change, unlike laws of a user's."""
 
 
 def housner(properties: RockingProperties) -> Restitution | SidedRestitution:

@@ -16,12 +16,10 @@ from rockflex.foundation.registry import registered_objects
 from rockflex.foundation.shown import shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import (
+    LAW_CLASSES,
     ImpactLaw,
     Restitution,
-    SidedRestitution,
     UnsavedLaw,
-    VVELComplete,
-    VVELSimplified,
 )
 from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
@@ -57,13 +55,7 @@ PROPERTIES = (
     "translational_inertia",
 )
 KNOWN_OR_NOT = ("top_height", "base_mass")
-LAWS: dict[str, Callable[..., ImpactLaw]] = {
-    "VVELSimplified": VVELSimplified,
-    "VVELComplete": VVELComplete,
-    "Restitution": Restitution,
-    "SidedRestitution": SidedRestitution,
-    "UnsavedLaw": UnsavedLaw,
-}
+SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
 ELEMENTS: tuple[type[BaseElement], ...] = (
@@ -180,7 +172,7 @@ def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
 def _impact_law_to_file(law: ImpactLaw) -> dict[str, Any]:
     """Return an impact law as JSON; for a user-defined law only its description."""
     name = type(law).__name__
-    if name in LAWS and type(law) is LAWS[name]:
+    if name in SAVED_LAWS and type(law) is SAVED_LAWS[name]:
         return {"law": name, **asdict(cast("Any", law))}
     return {"law": "UnsavedLaw", "description": shown(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
@@ -189,7 +181,7 @@ def _impact_law_from_file(parameters: dict[str, Any]) -> ImpactLaw:
     name = parameters.pop("law")
     if name == "SidedRestitution":
         parameters = {edge: Restitution(**each) for edge, each in parameters.items()}
-    return LAWS[name](**parameters)
+    return SAVED_LAWS[name](**parameters)
 
 
 def _element_from_file(kind: str, **values: Any) -> BaseElement:

@@ -15,7 +15,7 @@ from rockflex.foundation.checks import checked_finite_vector
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import shown
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.models._impact import LAW_CLASSES, ImpactLaw
 from rockflex.models._label import Model, parse_model
 from rockflex.models._work import WorkLimitError
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
@@ -55,7 +55,6 @@ if TYPE_CHECKING:
 
 MAX_CASES = 32  # cases kept
 MIN_WEIGHED_BYTES, MAX_TOTAL_BYTES = 8_000_000, 256_000_000  # of the tables of a case that are counted anew, and of all
-IMMUTABLE_LAWS = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
 _cache: OrderedDict[Hashable, tuple[PreparedCase, RockingProperties, RunOptions]] = OrderedDict()
 _lock = Lock()
@@ -72,7 +71,7 @@ def simulate_with_cached_case(
     """
     rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
     key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
-    keeps = options.impact is None or type(options.impact) in IMMUTABLE_LAWS
+    keeps = options.impact is None or type(options.impact) in LAW_CLASSES.values()
     known = _cached_case(key) if keeps else None
     case = known or options.case(model, properties, history=history, floors=history)
     response = case.run(motion)

@@ -24,7 +24,7 @@ from rockflex.foundation.schema import IMPACT, ImpactSchema, LawName
 from rockflex.foundation.shown import shown
 from rockflex.fragility._limit_states import check_limit_columns, limit_state_of
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw, Restitution, VVELComplete, VVELSimplified
+from rockflex.models._impact import LAWS, ImpactLaw
 from rockflex.models._label import Model, parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import OnError, Vertical, read_suite
@@ -144,13 +144,6 @@ class GivenStructure(StructureEntry):
         return {"name": self.name, "given": object_document("structures", self.given)}
 
 
-_LAWS: dict[str, Callable[..., ImpactLaw]] = {
-    "simplified": VVELSimplified,
-    "complete": VVELComplete,
-    "restitution": Restitution,
-}
-
-
 if TYPE_CHECKING:
     BoucWenTable = TomlTable
 else:
@@ -193,9 +186,9 @@ class RunOptionKeys(ImpactSchema, TomlTable):
         if self.impact is None:
             return None
         if isinstance(self.impact, str):
-            if self.impact not in _LAWS:  # a copy with another law was not checked
+            if self.impact not in LAWS:  # a copy with another law was not checked
                 raise InputError(f"impact must be {IMPACT.expected}, but {shown(self.impact)} was given.")
-            return _LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
+            return LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
         check_run_options(None, self.impact)
         return self.impact
 
@@ -210,7 +203,7 @@ class RunOptionKeys(ImpactSchema, TomlTable):
 
 def impact_law_name(law: ImpactLaw) -> str:
     """Return the name of an impact law of the package in a file."""
-    return next(name for name, kind in _LAWS.items() if type(law) is kind)
+    return next(name for name, kind in LAWS.items() if type(law) is kind)
 
 
 def validator_of_check(check: Callable[[Any], object]) -> AfterValidator:

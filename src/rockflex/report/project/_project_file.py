@@ -17,7 +17,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import unicode_text
 from rockflex.foundation.shown import shortened, shown
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.models._impact import LAW_CLASSES, LAWS
 from rockflex.motion._columns import record_csv
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -47,10 +47,10 @@ TABLES: dict[str, dict[str, type]] = {
 
 _OPTIONS = ("bouc_wen", "impact", "ground", "initial")  # objects of each structure
 _CLASSES: dict[str, type] = {
-    each.__name__: each
-    for each in (BoucWen, CheckLimits, InitialState, Restitution, SidedRestitution, VVELComplete, VVELSimplified)
+    **{each.__name__: each for each in (BoucWen, CheckLimits, InitialState)},
+    **LAW_CLASSES,
 }
-_LAW_NAMES = {"VVELSimplified": "simplified", "VVELComplete": "complete", "Restitution": "restitution"}
+_LAW_NAMES = {law.__name__: name for name, law in LAWS.items()}
 _TABLE = Described("a table", form=PLAIN)
 _NAME = Described("a name, in quotes", form=PLAIN)
 _FILE = Described("the name of a file in the project", form=PLAIN)
