@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
 
@@ -360,7 +361,7 @@ _SCALARS = (str, float, int, bool)
 KINDS: dict[str, type] = {f.name: f.type for f in fields(Response) if isinstance(f.type, type) and f.type in _SCALARS}
 PEAKS = tuple(KINDS)
 if Response.__doc__:  # not with python -OO
-    Response.__doc__ = Response.__doc__.replace("{outputs}", outputs_as_docstring(PEAKS).replace("\n", "\n    "))
+    Response.__doc__ = cleandoc(Response.__doc__).replace("{outputs}", outputs_as_docstring(PEAKS))
 
 
 def history_of(run: Response, place: int | None = None) -> History:
