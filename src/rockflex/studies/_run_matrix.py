@@ -9,7 +9,7 @@ from typing import Any, Self, cast
 
 import numpy as np
 
-from rockflex.foundation.checks import checked_instance, real_or_nan
+from rockflex.foundation.checks import real_or_nan
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import few_texts_shown, shown
@@ -397,11 +397,8 @@ class StudyRunKeywords(RunKeywords, total=False):
     demands: Demands | None
 
 
-def study_matrix(
-    structures: Structures, motions: Motions, models: Models, keywords: StudyRunKeywords, *, friction: bool = False
-) -> StudyMatrix:
+def study_matrix(structures: Structures, motions: Motions, models: Models, keywords: StudyRunKeywords) -> StudyMatrix:
     """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ..."""
-    checked_instance("friction", friction, bool)
     given: dict[str, Any] = {**keywords}
     demands = checked_demands(given.pop("demands", None), ())
     options = StudyOptions.of(**given)
@@ -410,4 +407,4 @@ def study_matrix(
     listed, names = checked_structures(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: rocking_properties_of(each) for name, each in zip(names, listed, strict=True)}
-    return StudyMatrix(named, suite, replace(options, models=chosen, friction=friction, demands=demands))
+    return StudyMatrix(named, suite, replace(options, models=chosen, demands=demands))

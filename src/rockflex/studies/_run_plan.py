@@ -57,8 +57,10 @@ def run_of_arguments(
     matrix = study_matrix(structures, motions, models, run)
     if "scales" in keys:
         keys |= {"scales": checked_scale_factors(keys["scales"], max(matrix.motions, key=lambda motion: motion.pga))}
-    study = study_of_matrix(kind, structures, matrix, run, **keys)
-    return run_plan(study.plan(), study=lambda: study, **place)
+    # The plan takes the properties, so that modes are found once; a folder records the structures as they were given.
+    properties = dict(zip(matrix.names, matrix.structures, strict=True))
+    plan = study_of_matrix(kind, properties, matrix, run, **keys).plan()
+    return run_plan(plan, study=lambda: study_of_matrix(kind, structures, matrix, run, **keys), **place)
 
 
 def study_of_matrix(
