@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import rockflex as rf
 from dask_cluster import Cluster
-from rockflex.studies.parallel import core_count
+from rockflex.studies.running import core_count
 
 STRUCTURES, PULSES = 20, 50
 SAMPLE = 0.2  # s between looks at the memory

@@ -32,7 +32,7 @@ FACTORS = {
     "model": r"models?|labels|chosen|cases",
     "scale": r"scales?|factors|levels",
 }
-KNOWN = ("_compare.compare", "_response.simulate_state_models", "_plan.run_of")  # products in other words
+KNOWN = ("_compare.compare", "_response.simulate_state_models", "_run_matrix.cross")  # in other words
 RUNS = re.compile(r"simulate|\.run\(|\.task\(|BatchRun|PreparedCase|case\(|tasks|runs")
 HEADER = ("what is said", "places", "files")
 Places = Iterator[tuple[Path, str]]

@@ -188,6 +188,7 @@ from .studies import overturning_spectrum as overturning_spectrum
 from .studies import pushover as pushover
 from .studies import rocking_spectrum as rocking_spectrum
 from .studies import run_study as run_study
+from .studies import running as running
 from .studies import simulate as simulate
 from .studies import simulate_many as simulate_many
 from .studies import simulate_set as simulate_set

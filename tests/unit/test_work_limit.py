@@ -1,6 +1,8 @@
 """The work of a run: estimated before it, bounded while it goes on, and lifted where it is asked for."""
 
+import json
 import math
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +14,7 @@ from rockflex import InputError, SolverError
 from rockflex.models import parse_model
 from rockflex.models._work import CostModel, Task, WorkLimitError, cost_model_of
 from rockflex.studies import PreparedCase
-from rockflex.studies._arguments import WORK_LIMIT, checked_work_limit
+from rockflex.studies.running import WORK_LIMIT, checked_work_limit
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
@@ -218,3 +220,48 @@ def test_a_study_file_has_a_limit() -> None:
 def test_sizes_that_no_memory_holds_are_refused_before_they_are_made(make, words) -> None:
     with pytest.raises(InputError, match=words):
         make()
+
+
+def test_a_block_of_running_has_its_limit_and_its_threads():
+    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    used = set[int]()
+
+    def thread(_):
+        used.add(threading.get_ident())
+        return 0.0
+
+    with rf.running(workers=1, work_limit=1e-9):
+        for tried in (
+            lambda: rf.simulate(frame, pulse),
+            lambda: rf.simulate_many(frame, pulse),
+            lambda: rf.simulate_set(frame, pulse),
+            lambda: rf.compare([frame, frame], pulse),
+            lambda: rf.run_cloud(frame, pulse),
+            lambda: rf.modal_combination(frame, pulse),
+            lambda: rf.overturning_scales(frame, pulse, [0.5, 1.0], "MDOF-S"),
+        ):
+            with pytest.raises((rf.InputError, rf.SolverError), match="work_limit"):
+                tried()
+        assert rf.simulate(frame, pulse, work_limit=5.0).status == "rocking"  # what a function is given comes first
+        with rf.running(work_limit=None):
+            rf.run_cloud(frame, pulse, scales=(0.5, 1.0), demands={"thread": thread})
+        with rf.running(workers=3), pytest.raises(rf.InputError, match="work_limit"):
+            rf.simulate(frame, pulse)
+    assert used == {threading.get_ident()}  # one thread of the outer block: none was started
+    assert rf.simulate(frame, pulse).status == "rocking"
+
+
+def test_a_study_in_a_block_of_running_records_its_limit(tmp_path):
+    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    with rf.running(work_limit=7.0):
+        rf.run_cloud(frame, pulse, folder=tmp_path / "study")
+    assert json.loads((tmp_path / "study" / "spec.json").read_text())["work_limit"] == 7.0
+
+
+@pytest.mark.parametrize("given", [{"workers": 0}, {"workers": 1.5}, {"work_limit": -1.0}, {"work_limit": "much"}])
+def test_running_refuses_what_it_cannot_use(given):
+    with pytest.raises(rf.InputError) as error, rf.running(**given):
+        pass
+    assert error.value.field in given

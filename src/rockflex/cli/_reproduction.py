@@ -18,7 +18,7 @@ from rockflex.foundation.errors import InputError, RecordWarning
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords, Piece
 from rockflex.papers.silva_stojadinovic_2024._targets import finish_target, target_cost, target_pieces
 from rockflex.report._document import FinishedResult
-from rockflex.studies.parallel import core_count
+from rockflex.studies.running import core_count
 
 ENOUGH_FOR_PROCESSES = 10.0  # s of work, below which starting other processes takes longer than it saves
 TICK = 0.5  # s between two pictures of the progress while nothing ends

@@ -19,9 +19,10 @@ from rockflex.models._label import parse_model
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import parse_toml_table
-from rockflex.studies._arguments import WORK_LIMIT, InitialState, checked_work_limit, ground_under_structure
+from rockflex.studies._arguments import InitialState, ground_under_structure
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
+from rockflex.studies.running import checked_work_limit
 from rockflex.studies.spec import RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
@@ -188,7 +189,7 @@ def number_or_word(text: str) -> Any:
 def parse_work_limit(given: str | None) -> float | None:
     """Return the limit of computing time in s, None for no limit, or the usual limit if none is given."""
     with naming_flags_in_errors({"work_limit": "--work-limit"}):
-        return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
+        return checked_work_limit("default" if given is None else number_or_word(given))
 
 
 def _bouc_wen_of_options(context: typer.Context, loaded: LoadedStructure) -> BoucWen | None:

@@ -23,5 +23,6 @@ from ._spectra import rocking_spectrum as rocking_spectrum
 from ._study_kind import KINDS as KINDS
 from ._study_kind import StudyFindings as StudyFindings
 from ._study_kind import StudyKind as StudyKind
+from .running import running as running
 from .spec import Records as Records
 from .spec import StructuresStudySpec as StructuresStudySpec

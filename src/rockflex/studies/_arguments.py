@@ -31,9 +31,6 @@ MAX_FREE_VIBRATION = 1e9  # s of free vibration
 GroundChoice: TypeAlias = Ground | Callable[[RockingProperties], Ground] | None
 """The ground of all structures, or a function that returns the ground of each; None: rigid, without sliding."""
 
-WORK_LIMIT = 30.0
-"""Default limit of the work of one run, in s of computing on one core."""
-
 
 def check_keywords(given: Mapping[str, Any], known: type) -> None:
     """Raise a TypeError, as Python does, if no option that is `known`, a TypedDict, has a name."""
@@ -87,20 +84,6 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
             field="free_vibration",
         )
     return seconds
-
-
-def checked_work_limit(value: float | Literal["none"] | None) -> float | None:
-    """Return the seconds of computing that one run may take; None means no limit, which files call "none"."""
-    if value is None or (isinstance(value, str) and value == "none"):
-        return None
-    seconds = real_or_nan(value)
-    if not seconds > 0.0:
-        raise InputError(
-            f"work_limit must be a positive number of seconds of computing for one run, or None for no limit ("
-            f'"none" in a file and on the command line), but {shown(value)} was given.',
-            field="work_limit",
-        )
-    return seconds if math.isfinite(seconds) else None
 
 
 def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: GroundChoice = None) -> None:

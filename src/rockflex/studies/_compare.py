@@ -15,7 +15,6 @@ from rockflex.response._comparison import Comparison
 from rockflex.response._record_set import floor_peaks
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     GroundChoice,
     InitialState,
     Motions,
@@ -25,6 +24,7 @@ from rockflex.studies._arguments import (
 )
 from rockflex.studies._simulate import simulate_many
 from rockflex.studies.progress import ProgressChoice, reporting_progress
+from rockflex.studies.running import WorkLimit
 
 T = TypeVar("T")
 Alternative: TypeAlias = RockingStructure | RockingProperties
@@ -44,7 +44,7 @@ def compare(
     initial: InitialState | Mapping[str, InitialState] | None = None,
     ground: GroundChoice | Mapping[str, GroundChoice] = None,
     workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     progress: ProgressChoice = None,
 ) -> Comparison:
     """Run alternatives under the same records, and compare their demands with those of the first.

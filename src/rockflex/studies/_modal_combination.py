@@ -11,8 +11,9 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._response import Response
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._uplifted import uplifted_modes
-from rockflex.studies._arguments import WORK_LIMIT, RockingStructure, checked_positive_numbers, rocking_properties_of
+from rockflex.studies._arguments import RockingStructure, checked_positive_numbers, rocking_properties_of
 from rockflex.studies._simulate import simulate
+from rockflex.studies.running import WorkLimit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -207,7 +208,7 @@ def modal_combination(
     structure: RockingStructure | RockingProperties,
     motion: GroundMotion,
     free_vibration: float | Literal["settle"] = 0.0,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
 ) -> CombinedPeaks:
     """Estimate peaks of a structure from 2DOF-S and its second mode on a fixed base, by SRSS.
 

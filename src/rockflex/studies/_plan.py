@@ -135,7 +135,5 @@ class CrossPlan(ChunkedPlan):
 
     def run_of(self, unit: int) -> tuple[int, int, int, float]:
         """Return the places of the structure, record and model of a unit, and the scale of its (first) run."""
-        rest, level = divmod(unit, self._n_levels)
-        rest, model = divmod(rest, len(self.matrix.labels))
-        structure, record = divmod(rest, len(self.matrix.motions))
+        structure, record, model, level = self.matrix.run_at(unit, self._n_levels)
         return structure, record, model, self.scale(structure, record, level)

@@ -32,15 +32,14 @@ from rockflex.response._respond import (
 from rockflex.response._response import Response
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     GroundChoice,
     InitialState,
     check_run_options,
-    checked_work_limit,
     free_vibration_time,
     ground_under_structure,
 )
 from rockflex.studies.progress import ProgressChoice
+from rockflex.studies.running import WORK_LIMIT, WorkLimit, checked_work_limit
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +128,7 @@ class RunKeywords(TypedDict, total=False):
     bouc_wen: BoucWen | None
     impact: ImpactLaw | None
     ground: GroundChoice
-    work_limit: float | None
+    work_limit: WorkLimit
 
 
 class ManyKeywords(RunKeywords, total=False):
@@ -167,7 +166,7 @@ class RunOptions:
         bouc_wen: BoucWen | None = None,
         ground: GroundChoice = None,
         initial: InitialState | None = None,
-        work_limit: float | Literal["none"] | None = WORK_LIMIT,
+        work_limit: WorkLimit = "default",
     ) -> Self:
         """Return the options that a function was called with."""
         if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -2,9 +2,10 @@
 
 import hashlib
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any, Self, cast
 
 import numpy as np
@@ -190,6 +191,23 @@ class RunMatrix:
                 found = error
             self._cases[structure, model] = found
         return found
+
+    def cross(
+        self, scales: Iterable[float], structures: Iterable[int] | None = None, records: Iterable[int] | None = None
+    ) -> Iterator[Run]:
+        """Yield the runs of every structure, record and model at every scale, structures outermost.
+
+        `structures` and `records` are the places of some of them, in place of all.
+        """
+        chosen = range(len(self.structures)) if structures is None else structures
+        shaking = range(len(self.motions)) if records is None else records
+        return product(chosen, shaking, range(len(self.models)), scales)
+
+    def run_at(self, place: int, n_levels: int) -> tuple[int, int, int, int]:
+        """Return the places of the structure, record, model and level of a run of `cross`, from its own."""
+        rest, level = divmod(place, n_levels)
+        rest, model = divmod(rest, len(self.models))
+        return *divmod(rest, len(self.motions)), model, level
 
     def scaled(self, runs: Iterable[Run]) -> list[Scaled]:
         """Return the case, the motion and the scale of runs."""

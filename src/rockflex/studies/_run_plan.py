@@ -17,8 +17,9 @@ from rockflex.studies._run_matrix import StudyMatrix, StudyRunKeywords, study_ma
 from rockflex.studies.folders._folder import StudyFolder
 from rockflex.studies.folders._manifest import LEVEL
 from rockflex.studies.folders._parts import PartMaker, StudyPart
-from rockflex.studies.parallel import NumberedChunks, map_chunks_on_dask, map_runs, worker_count
+from rockflex.studies.parallel import NumberedChunks, map_chunks_on_dask, map_runs
 from rockflex.studies.progress import Begin, ProgressChoice, reporting_progress
+from rockflex.studies.running import checked_work_limit, worker_count
 from rockflex.studies.spec import StudySpec
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ def split_keywords(options: StudyKeywords) -> tuple[StudyRunKeywords, PlaceKeywo
     check_keywords(options, StudyKeywords)
     place = {name: value for name, value in options.items() if name in PlaceKeywords.__annotations__}
     run = {name: value for name, value in options.items() if name not in place}
+    run["work_limit"] = checked_work_limit(options.get("work_limit", "default"))
     return cast("StudyRunKeywords", run), cast("PlaceKeywords", place)
 
 

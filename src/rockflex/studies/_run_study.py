@@ -14,8 +14,8 @@ from rockflex.studies._result_tables import tables_to_dataframe
 from rockflex.studies._run_plan import check_place, fill_folder, table_of_plan
 from rockflex.studies._study_kind import study_kind_named
 from rockflex.studies.folders._folder import StudyFolder
-from rockflex.studies.parallel import core_count
 from rockflex.studies.progress import PartProgress, check_progress, reporting_part_progress
+from rockflex.studies.running import worker_count
 from rockflex.studies.spec import StudySpec
 
 if TYPE_CHECKING:
@@ -231,7 +231,7 @@ def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> f
     """
     plan = study.plan()
     plan.check_work()
-    threads = core_count() if workers is None else checked_whole_number("workers", workers, 1)
+    threads = worker_count(workers)
     sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
         plan.results([unit])

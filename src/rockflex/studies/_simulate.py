@@ -4,7 +4,6 @@ import math
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
-from itertools import product
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
@@ -25,7 +24,6 @@ from rockflex.response._respond import STATUSES
 from rockflex.response._response import Response
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     GroundChoice,
     InitialState,
     Models,
@@ -46,8 +44,9 @@ from rockflex.studies._arguments import (
 from rockflex.studies._prepared_case import ManyKeywords, PreparedCase, RunOptions, RunPeaks, peaks_of_runs
 from rockflex.studies._result_tables import RESULTS, arrow_table, tables_to_dataframe
 from rockflex.studies._run_matrix import RunMatrix
-from rockflex.studies.parallel import map_runs_in_order, worker_count
+from rockflex.studies.parallel import map_runs_in_order
 from rockflex.studies.progress import reporting_progress
+from rockflex.studies.running import WorkLimit, worker_count
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,7 +101,7 @@ def simulate(
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
     initial: InitialState | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     ground: GroundChoice = None,
 ) -> Response:
     """Simulate one structure under one ground motion.
@@ -138,9 +137,9 @@ def simulate(
     initial
         The state at t = 0; at rest if None.
     work_limit
-        Limit of the work of the run, in s of computing on one core; None for no limit. A run is refused if its
-        estimate exceeds the limit, and stopped when it reaches the limit. Work is counted, not timed, so the limit is
-        the same on every machine. A typical run takes milliseconds.
+        Limit of the work of the run, in s of computing on one core; None for no limit. ``"default"``: that of
+        `running`, or else 30 s. A run is refused if its estimate exceeds the limit, and stopped when it reaches the
+        limit. Work is counted, not timed, so the limit is the same on every machine. A typical run takes milliseconds.
     ground
         Springs under the base, friction between base and ground, or both; for models whose base can lift. Or a
         function that returns a `Ground` for the `RockingProperties` of a structure. Default: rigid ground on which the
@@ -218,7 +217,7 @@ def simulate_many(
         function as the `ground` gives each its own: ``lambda properties: Ground(springs=winkler_bed(
         properties.half_width, ...), ...)``. A run that exceeds `work_limit` has a message in `error`.
     workers
-        Number of threads; None for one a core.
+        Number of threads; None for that of `running`, or else one a core.
     progress
         ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
         of the runs that are done and of all, called here, first with 0. What it raises ends the study.
@@ -264,7 +263,7 @@ def simulate_many(
     factors = checked_scale_factors(scales, max(records, key=lambda motion: motion.pga))
     shape = (len(everything), len(records), len(chosen), len(factors))
     matrix = RunMatrix(everything, records, chosen, chosen_options, history=history, floors=history)
-    runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
+    runs_of_one = [*matrix.cross(factors, [0])]
     each, total = len(runs_of_one), math.prod(shape)
     least, most = RUNS_PER_TASK
     per_task = min(most, max(least, total // (TASKS_PER_THREAD * worker_count(workers))))

@@ -20,7 +20,6 @@ from rockflex.response._response import Response
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._towers import rigid_block
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     GroundChoice,
     RockingStructure,
     check_motion_argument,
@@ -34,6 +33,7 @@ from rockflex.studies._prepared_case import RunOptions
 from rockflex.studies._simulate import simulate_many
 from rockflex.studies.parallel import map_runs_in_order
 from rockflex.studies.progress import ProgressChoice, reporting_progress
+from rockflex.studies.running import WorkLimit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +47,7 @@ def rocking_spectrum(
     impact: ImpactLaw | None = None,
     free_vibration: float | Literal["settle"] = "settle",
     workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
@@ -179,7 +179,7 @@ def overturning_scales(
     model: str | Model = "rigid",
     impact: ImpactLaw | None = None,
     tolerance: float = 1e-6,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     ground: GroundChoice = None,
 ) -> OverturningScales:
     """Find the scales at which a motion starts to overturn a structure.
@@ -235,7 +235,7 @@ def overturning_spectrum(
     relative_amplitudes: Sequence[float] = SCAN,
     tolerance: float = 1e-6,
     workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     ground: GroundChoice = None,
     progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
@@ -324,7 +324,7 @@ def _run_of_spectrum(
     structure: RockingStructure | RockingProperties,
     model: str | Model,
     impact: ImpactLaw | None,
-    work_limit: float | None,
+    work_limit: WorkLimit,
     ground: GroundChoice,
 ) -> Run:
     options = RunOptions.of("settle", impact=impact, ground=ground, work_limit=work_limit)

@@ -404,7 +404,4 @@ class MonteCarloPlan(ChunkedPlan):
         return row, self.matrix.on_ground(properties, ground)
 
     def _runs(self, number: int) -> Iterator[tuple[int, int, int, float]]:
-        models = range(len(self.matrix.labels))
-        return (
-            (0, record, model, scale) for record in self.records_of(number) for model in models for scale in self.scales
-        )
+        return self.matrix.cross(self.scales, [0], self.records_of(number))

@@ -2,7 +2,6 @@
 
 import gc
 import math
-import os
 import pickle
 import time
 from collections.abc import Callable, Generator, Iterable
@@ -16,19 +15,10 @@ from rockflex.engine.stops import asked_to_stop, stopping_when
 from rockflex.foundation.checks import checked_positive, checked_whole_number
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
+from rockflex.studies.running import worker_count
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
-
-
-def core_count() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
-
-
-def worker_count(workers: SupportsIndex | None) -> int:
-    """Return the number of workers; None means one per core."""
-    return core_count() if workers is None else checked_whole_number("workers", workers, 1)
 
 
 def map_threads(

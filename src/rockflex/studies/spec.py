@@ -34,11 +34,9 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable, table_of, toml_problem_sentences
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     check_run_options,
     checked_motions,
     checked_structures,
-    checked_work_limit,
     free_vibration_time,
     is_structure_or_properties,
     rocking_properties_of,
@@ -53,6 +51,7 @@ from rockflex.studies._objects import (
 )
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._run_matrix import StudyMatrix, StudyOptions, check_different_values, checked_demands
+from rockflex.studies.running import WORK_LIMIT, checked_work_limit
 
 
 class Records(TomlTable):

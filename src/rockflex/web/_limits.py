@@ -201,13 +201,9 @@ def check_size_of_study(plan: "CloudPlan", path: str) -> None:
         raise Refusal({path: message})
     matrix = plan.matrix
     largest = max(plan.scales, key=abs)
-    work = 0.0
-    for structure, properties in enumerate(matrix.structures):
-        for model, label in enumerate(matrix.labels):
-            _check_model_of_structure(plan, properties, label, path)
-            for record in range(len(matrix.motions)):
-                task = matrix.task(structure, record, model, largest)
-                if task is not None:
-                    work += len(plan.scales) * _checked_work_of_run(task, path)
+    for structure, _, model, _ in matrix.cross([largest], records=[0]):
+        _check_model_of_structure(plan, matrix.structures[structure], matrix.labels[model], path)
+    tasks = (matrix.task(*run) for run in matrix.cross([largest]))
+    work = len(plan.scales) * sum(_checked_work_of_run(task, path) for task in tasks if task is not None)
     if work > MAX_STUDY_COST:
         raise Refusal({path: "it takes too long for a page. Choose models with fewer modes, or use the command line."})

@@ -31,7 +31,6 @@ from rockflex.response._record_set import RecordSet, Rule, checked_rule
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
-    WORK_LIMIT,
     InitialState,
     Motions,
     RockingStructure,
@@ -41,6 +40,7 @@ from rockflex.studies._arguments import (
 )
 from rockflex.studies._compare import MAX_ALTERNATIVES, compare
 from rockflex.studies._simulate import checked_period_range, simulate_set
+from rockflex.studies.running import WorkLimit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -251,7 +251,7 @@ class Project(HtmlTable, Value):
             workers=workers,
         )
 
-    def comparison(self, workers: SupportsIndex | None = None, work_limit: float | None = WORK_LIMIT) -> Comparison:
+    def comparison(self, workers: SupportsIndex | None = None, work_limit: WorkLimit = "default") -> Comparison:
         """Return what `compare` returns for all structures, of which there must be two at least.
 
         `workers` and `work_limit` are as there.

@@ -255,10 +255,7 @@ class DesignSearchPlan(ChunkedPlan):
         return {**found, **{name: [facts[each][name] for each in found["structure"]] for name in names}}
 
     def _runs_of(self, designs: Iterable[int]) -> list[Run]:
-        return [
-            (place, record, 0, scale)
-            for place, record, scale in product(designs, range(len(self.motions)), self.scales)
-        ]
+        return [*self._matrix.cross(self.scales, designs)]
 
     def _facts_of(self, place: int) -> dict[str, Any]:
         p = self._matrix.structures[place]

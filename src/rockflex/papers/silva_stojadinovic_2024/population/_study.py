@@ -19,7 +19,7 @@ from rockflex.response._respond import response_of_solution
 from rockflex.response._response import Response
 from rockflex.structure._frames import Frame
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import WORK_LIMIT, Motions, checked_motions, checked_work_limit, free_vibration_time
+from rockflex.studies._arguments import Motions, checked_motions, free_vibration_time
 from rockflex.studies._modal_combination import SecondMode, combine_modal_peaks, second_mode_peaks
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._prepared_case import PreparedCase, solutions_of_runs
@@ -27,6 +27,7 @@ from rockflex.studies._result_tables import Columns, Row, columns_of_kind, resul
 from rockflex.studies._run_matrix import record_columns, record_facts
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies.progress import ProgressChoice
+from rockflex.studies.running import WorkLimit, checked_work_limit
 from rockflex.studies.spec import FreeVibration, StudySpec
 
 if TYPE_CHECKING:
@@ -311,7 +312,7 @@ def run_population(
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: WorkLimit = "default",
     progress: ProgressChoice = None,
     folder: str | Path | None = None,
     dask: str | None = None,
