@@ -34,7 +34,6 @@ from rockflex.cli._app import app
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies.design import DesignStudy
 from rockflex.studies.design._design_search import MarginSurface
-from rockflex.studies.design._design_study import stored_design_search
 
 
 @pytest.fixture(scope="module")
@@ -385,7 +384,7 @@ def folder(study, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(study, folder):
-    return rf.best_design(folder[1], *stored_design_search(study.document()), n_resamples=40)
+    return rf.best_design(folder[1], study.question.requirements, study.question.cost, n_resamples=40)
 
 
 def parts(path):
@@ -403,7 +402,7 @@ def test_the_study_is_the_call_in_python(study, folder):
     pd.testing.assert_frame_equal(
         table, rf.search_design(held, motions, space, wanted, cost, "2DOF-S", [0.7, 1.4, 2.8])
     )
-    assert stored_design_search(study.document()) == (wanted, cost)
+    assert (study.question.requirements, study.question.cost) == (wanted, cost)
     assert table["error"].isna().all()
     assert set(table["round"]) == {0, 1, 2}
 
@@ -554,7 +553,7 @@ def test_a_search_is_run_kept_told_and_drawn(tmp_path, level, hazard):
     assert done.exit_code == 0, done.stderr
     document = json.loads(invoke("design", file, "--out", kept, "--json").stdout)
     study = rf.load_study(file)
-    found = rf.best_design(rf.StudyFolder.load(kept).frame(), *stored_design_search(study.document()))
+    found = rf.best_design(rf.StudyFolder.load(kept).frame(), study.question.requirements, study.question.cost)
     (designs,) = (rows for title, rows in document.items() if title.startswith("Designs of the search"))
     assert [row["cost"] for row in designs] == found.designs["cost"].tolist()
     (limits,) = (rows for title, rows in document.items() if title.startswith("Limits of the cheapest design"))

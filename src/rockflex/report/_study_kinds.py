@@ -223,7 +223,6 @@ MONTE_CARLO = StudyKind(
 
 def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex.fragility._limit_states import limit_state_label
-    from rockflex.studies.design._design_study import design_tables_by_limit, stored_design_limits
     from rockflex.studies.design._design_table import smallest_width
 
     if study.search is not None:
@@ -236,10 +235,9 @@ def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
     at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
     value = "rate" if study.hazard else "probability"
-    targets = [target for _, _, target, _ in stored_design_limits(study.document())]
     designs: dict[tuple[str, str, float], dict[str, Any]] = {}
     widths: list[dict[str, Any]] = []
-    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, study.document()), strict=True):
+    for limit, target, table in study.question.tables(runs):
         word = limit_state_label(limit)
         for reason, lost in table[table[value].isna()].groupby("note"):
             found.unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
@@ -267,16 +265,15 @@ def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
                 found.remarks.append(f"{word}, {each['tendon']}, {each['model']}: {each['note']}")
     found.tables[f"Designs, and the {asked} of exceeding each limit; medians of all runs"] = [*designs.values()]
     if widths:
-        most = ", ".join(f"{target:g}" for target in dict.fromkeys(targets) if target is not None)
+        most = ", ".join(f"{target:g}" for target in dict.fromkeys(study.question.targets) if target is not None)
         found.tables[f"Least half width from which on the {asked} is at most {most}"] = widths
 
 
 def _report_search(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex.studies.design._best_design import best_design
-    from rockflex.studies.design._design_study import stored_design_search
 
-    requirements, cost = stored_design_search(study.document())
-    best = best_design(runs, requirements, cost)
+    requirements = study.question.requirements
+    best = best_design(runs, requirements, study.question.cost)
     found.remarks += best.notes
     found.tables["Designs of the search, in the order in which they were run"] = [
         _searched_design_row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
@@ -324,14 +321,11 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex.fragility._limit_states import limit_state_label
     from rockflex.plot._design import plot_design, plot_design_search
     from rockflex.studies.design._best_design import best_design
-    from rockflex.studies.design._design_study import (
-        design_tables_by_limit,
-        stored_design_limits,
-        stored_design_search,
-    )
+    from rockflex.studies.design._design_study import DesignQuestion
 
-    if "search" in spec:
-        best = best_design(runs, *stored_design_search(spec))
+    question = DesignQuestion.of_document(spec)
+    if question.cost is not None:
+        best = best_design(runs, question.requirements, question.cost)
         yield "design_search", lambda: plot_design_search(best)
         return
     if not spec["limits"]:
@@ -339,8 +333,7 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
             "The study has no limits, whose probabilities a figure would show. Give its runs with a limit to "
             "rf.design_table, and the table to rf.plot_design."
         )
-    targets = [target for _, _, target, _ in stored_design_limits(spec)]
-    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):
+    for limit, target, table in question.tables(runs):
         stem = f"design_{'_'.join(limit_state_label(limit).split())}"
         yield stem, lambda table=table, target=target: plot_design(table, target)
 

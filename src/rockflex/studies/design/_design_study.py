@@ -1,8 +1,8 @@
 """Design of a base: its width and the tendon that holds it down (Section 4.1)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Unpack
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Unpack
 
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
@@ -50,34 +50,47 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def design_tables_by_limit(
-    runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
-) -> "Iterator[tuple[float | str, pd.DataFrame]]":
-    """Yield each limit of a study, from its `document()`, with its `design_table`."""
-    for limit, at, _, hazard in stored_design_limits(spec):
-        yield limit, design_table(runs, limit, measure=spec["measure"], at=at, hazard=hazard, confidence=confidence)
+_OF_QUESTION = {"limits", "level", "target", "hazard", "measure", "search"}
 
 
-def stored_design_limits(
-    spec: Mapping[str, Any],
-) -> "Iterator[tuple[float | str, float | None, float | None, HazardCurve | None]]":
-    """Yield limit, level, target and hazard curve of each limit of a study, from its document."""
-    hazard = None if spec.get("hazard") is None else HazardCurve(**spec["hazard"])
-    limits: list[float | str] = spec["limits"]
-    levels, targets = (
-        given if isinstance(given, list) else [given] * len(limits) for given in (spec.get("level"), spec.get("target"))
-    )
-    for limit, level, target in zip(limits, levels, targets, strict=True):
-        yield limit, level, target, hazard
+@dataclass(frozen=True)
+class DesignQuestion:
+    """The question of a design study: its limits, the shaking at which each counts, and what a design may reach.
 
+    `levels` and `targets` have a value, perhaps None, for each limit. `cost` is that of a search, None without one.
+    """
 
-def stored_design_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
-    """Return the requirements and the unit costs of a study with a search, from its document."""
-    found = [
-        Requirement(limit, target, at, hazard, spec["measure"])  # pyright: ignore[reportArgumentType]
-        for limit, at, target, hazard in stored_design_limits(spec)
-    ]
-    return checked_requirements(found), DesignCost(**spec["search"]["cost"])
+    limits: Sequence[float | str]
+    levels: Sequence[float | None]
+    targets: Sequence[float | None]
+    hazard: HazardCurve | None
+    measure: str
+    cost: DesignCost | None
+
+    @classmethod
+    def of_document(cls, spec: Mapping[str, Any]) -> Self:
+        """Return the question of a study from its document, or from these keys of it."""
+        limits: list[float | str] = spec["limits"]
+        levels, targets = (
+            given if isinstance(given, list) else [given] * len(limits)
+            for given in (spec.get("level"), spec.get("target"))
+        )
+        hazard = None if spec.get("hazard") is None else HazardCurve(**spec["hazard"])
+        cost = None if spec.get("search") is None else DesignCost(**spec["search"]["cost"])
+        return cls(limits, levels, targets, hazard, spec["measure"], cost)
+
+    @property
+    def requirements(self) -> list[Requirement]:
+        """The limits with their targets, for a search."""
+        each = zip(self.limits, self.targets, self.levels, strict=True)
+        return checked_requirements(
+            [Requirement(limit, target, at, self.hazard, self.measure) for limit, target, at in each]  # pyright: ignore[reportArgumentType]
+        )
+
+    def tables(self, runs: "pd.DataFrame") -> "Iterator[tuple[float | str, float | None, pd.DataFrame]]":
+        """Yield each limit with its target and the `design_table` of the runs."""
+        for limit, target, at in zip(self.limits, self.targets, self.levels, strict=True):
+            yield limit, target, design_table(runs, limit, measure=self.measure, at=at, hazard=self.hazard)
 
 
 _FACTORS = "a list of factors on the {} of the structure, or a range {{smallest = 0.5, largest = 2.0, count = 4}}"
@@ -208,21 +221,21 @@ class DesignStudy(StructuresStudySpec):
             raise InputError(f"structures: a design study has one structure, but {len(self.structures)} were given.")
         if self.limits and (self.level is None) == (self.hazard is None):
             raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
-        if self.hazard is not None:
-            HazardCurve(**self.hazard.model_dump())
-        for name, unit in (("level", "the unit of the measure"), ("target", "probability or 1/year")):
+        for name in ("level", "target"):
             given = getattr(self, name)
             if isinstance(given, list) and len(given) != len(self.limits):  # pyright: ignore[reportUnknownArgumentType]
                 raise InputError(
                     f"{name} must be one number, or one for each of the {len(self.limits)} limits, but "
                     f"{shown(given)} was given."
                 )
-            for each in self._for_each(name):
-                if each is not None:
-                    checked_positive(name, each, unit)
-        for each in self._for_each("target"):
-            if each is not None and self.hazard is None:
-                checked_in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
+        question = self.question
+        for level, target in zip(question.levels, question.targets, strict=True):
+            if level is not None:
+                checked_positive("level", level, "the unit of the measure")
+            if target is not None:
+                checked_positive("target", target, "probability or 1/year")
+                if question.hazard is None:
+                    checked_in_range("target", target, 0.0, 1.0, hint="With a level it is a probability.")
         return self
 
     @model_validator(mode="after")
@@ -238,13 +251,13 @@ class DesignStudy(StructuresStudySpec):
                 "A search varies the elements of the structure itself by factors. Leave out the levels [[tendons]], "
                 "and give the structure its tendons as [[structures.elements]]."
             )
-        stored_design_search(self.document())
-        self._space(self.search)
+        _ = self.question.requirements, self._space(self.search)
         return self
 
-    def _for_each(self, name: str) -> list[float | None]:
-        given: Any = getattr(self, name)
-        return given if isinstance(given, list) else [given] * len(self.limits)
+    @property
+    def question(self) -> DesignQuestion:
+        """Limits, shaking, targets and cost."""
+        return DesignQuestion.of_document(self.model_dump(include=_OF_QUESTION))
 
     def _space(self, search: DesignSearchTable) -> DesignSearch:
         given: dict[str, Any] = search.model_dump(exclude={"cost"})
@@ -261,16 +274,14 @@ class DesignStudy(StructuresStudySpec):
         """
         matrix = self.matrix()
         if self.search is not None:
-            requirements, cost = stored_design_search(self.document())
-            return DesignSearchPlan(
-                matrix, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk
-            )
+            question = self.question
+            wanted, cost = question.requirements, question.cost
+            assert cost is not None  # a search has one
+            return DesignSearchPlan(matrix, self._space(self.search), wanted, cost, self.scales, self.runs_per_chunk)
         levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
         (properties,) = matrix.structures
-        if self.hazard is not None:
-            check_hazard_damping(
-                HazardCurve(**self.hazard.model_dump()), first_damping_column(properties), self.measure
-            )
+        if (hazard := self.question.hazard) is not None:
+            check_hazard_damping(hazard, first_damping_column(properties), self.measure)
         designs = designs_of_structure(properties, self.half_widths, levels, self.base_mass_per_width)
         for design in designs:
             for limit in self.limits:
