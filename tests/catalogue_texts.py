@@ -14,7 +14,6 @@ from rockflex.fragility._jackknife import ONE_RECORDING
 from rockflex.fragility._outcomes import FEW_RUNS, PARTS
 from rockflex.plot._design import _AXES
 from rockflex.plot._history import PANELS
-from rockflex.plot._loops import _ELEMENT_NAMES
 from rockflex.plot._motion import _NAMES as _SPECTRA
 from rockflex.plot._record_set import LINES
 from rockflex.report._publication_files import jinja_templates_in
@@ -24,6 +23,7 @@ from rockflex.report.run._sheet import TEMPLATES
 from rockflex.response._comparison import STATISTICS
 from rockflex.response._limit_checks import KINDS, SOURCES
 from rockflex.response._outputs import COMPARED_DEMANDS, DEMANDS_OF_SET, HISTORY, OUTPUTS
+from rockflex.structure._elements import ELEMENTS
 from rockflex.structure._law_bars import BARS
 
 SOURCE = TEMPLATES.parents[2]
@@ -74,8 +74,8 @@ def labels():
     )
     yield from (each.symbol for each in LIMIT_STATES.values() if "\\" not in each.symbol)
     yield from (text for name, (_, words, _) in _AXES.items() for text in (words, name.replace("_", " ")))
-    yield from (*_ELEMENT_NAMES.values(), *(label for *_, label in LINES.values()))
-    yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
+    yield from (label for *_, label in LINES.values())
+    yield from (object.__new__(each).words for each in (ELEMENTS | BARS).values())
     yield from texts_of_answers()
 
 

@@ -5,9 +5,9 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models._element import BROKEN, DOWN, INWARD, OUTWARD, SLACK, UP
 from rockflex.models._state_layout import SIDE
 from rockflex.models._values_at_states import phases_at_states
+from rockflex.structure._branches import BROKEN, DOWN, INWARD, OUTWARD, SLACK, UP
 from twins.controlled import Bar, ControlledTwin, Dashpot, Slider
 
 FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.6, aspect_ratio=7.0, damping_ratio=0.03)

@@ -14,8 +14,7 @@ from rockflex.foundation.schema import FrameFlags, FrameSchema, ReportKeys
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.units import UnitSystem
 from rockflex.structure._attachment import element_parameters
-from rockflex.structure._element_law import ElementLaw
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._frames import Frame
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
@@ -41,14 +40,14 @@ ELEMENT_UNITS = {
     "coefficient": "N s/m",
     "force": "N",
 }
-_ELEMENT_COLUMNS = (
-    ("x", "length"),
-    ("k", "stiffness", "kN/m"),
-    ("c", "damping"),
-    ("F_0", "force"),
-    ("strength", "force"),
-    ("α", "ratio"),
-    ("breaks at", "displacement", "m"),
+_ELEMENT_COLUMNS = (  # symbol, the parameters that it may be, quantity and unit
+    ("x", ("position",), "length"),
+    ("k", ("stiffness",), "stiffness", "kN/m"),
+    ("c", ("coefficient",), "damping"),
+    ("F_0", ("initial_force",), "force"),
+    ("strength", ("yield_force", "force"), "force"),
+    ("α", ("post_yield_ratio",), "ratio"),
+    ("breaks at", ("rupture_elongation",), "displacement", "m"),
 )
 _WORDS = 2  # columns of words
 
@@ -60,7 +59,7 @@ def describe_elements(elements: Sequence[BaseElement]) -> list[dict[str, Any]]:
 
 def elements_table(elements: Sequence[BaseElement], units: UnitSystem) -> "Table":
     """Return the table of elements, without the columns that none of them needs."""
-    columns = [(symbol, units.of(*quantity)) for symbol, *quantity in _ELEMENT_COLUMNS]
+    columns = [(symbol, units.of(*quantity)) for symbol, _, *quantity in _ELEMENT_COLUMNS]
     headings = ["no.", "element", *(unit.heading(symbol) for symbol, unit in columns)]
     sizes = [unit.size for _, unit in columns]
     rows = [(str(place), *_element_row(each, sizes)) for place, each in enumerate(elements, start=1)]
@@ -69,23 +68,16 @@ def elements_table(elements: Sequence[BaseElement], units: UnitSystem) -> "Table
 
 
 def _element_row(element: BaseElement, sizes: Sequence[float]) -> tuple[str, ...]:
-    stiffness = damping = prestress = strength = ratio = breaks = None
-    if isinstance(element, ElementLaw):
-        given = {key: value for key, value in element_parameters(element).items() if isinstance(value, float)}
-        stiffness, strength, ratio = map(given.get, ("stiffness", "yield_force", "post_yield_ratio"))
-    if isinstance(element, Tendon | YieldingDissipator):
-        stiffness, strength = element.stiffness, element.yield_force
-        ratio, breaks = element.post_yield_ratio, element.rupture_elongation
-    if isinstance(element, Tendon):
-        prestress = element.initial_force
-    elif isinstance(element, ViscousDamper):
-        damping = element.coefficient
-    elif isinstance(element, FrictionDamper):
-        strength = element.force
-    only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
-    values = (None if element.attached else element.position, stiffness, damping, prestress, strength, ratio, breaks)
-    cells = [console.number(None if value is None else value / size) for value, size in zip(values, sizes, strict=True)]
+    given = element_parameters(element) | {"position": element.place}
+    if not element.rate_dependent:
+        given.pop("coefficient", None)  # of a law that damps nothing it is something else
+    values = {name: value for name, value in given.items() if isinstance(value, float)}
+    cells = [
+        console.number(next((values[name] / size for name in names if name in values), None))
+        for (_, names, *_), size in zip(_ELEMENT_COLUMNS, sizes, strict=True)
+    ]
     place = element.where if element.attached else cells[0]
+    only = ", tension only" if given.get("tension_only") else ""
     return (_element_kind(element).replace("_", " ") + only, place, *cells[1:])
 
 

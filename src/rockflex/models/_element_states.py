@@ -3,7 +3,6 @@
 import numpy as np
 
 from rockflex.foundation.arrays import Array
-from rockflex.models._element import FrictionElement
 from rockflex.models._elements import friction_damper_shares, is_held_by_dampers
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._values_at_states import acting_side, held_moment, states_by_phase
@@ -24,10 +23,8 @@ def element_forces(model: RockingModel, states: Array) -> Array:
             shares = friction_damper_shares(model.properties, model.elements, key[0])
             found[chosen] += np.outer(held_moment(model, states[chosen]), shares)
     for place, each in enumerate(model.elements):
-        if isinstance(
-            each, FrictionElement
-        ):  # where it turns back without a stop, it would take more than F_0 to hold the base
-            np.clip(found[:, place], -each.force, each.force, out=found[:, place])
+        if each.friction:  # where it turns back without a stop, it would take more than F_0 to hold the base
+            np.clip(found[:, place], -each.friction, each.friction, out=found[:, place])
     return found
 
 

@@ -7,22 +7,11 @@ import numpy as np
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.constants import GRAVITY
-from rockflex.models._element import (
-    HELD,
-    BranchLimit,
-    ElasticElement,
-    Element,
-    FrictionElement,
-    LawElement,
-    ViscousElement,
-    YieldingElement,
-    YieldingStoryElement,
-)
 from rockflex.models._phase import BaseEquations, Key
 from rockflex.models._state_layout import StateLayout
 from rockflex.structure._analysis import FloorModes
-from rockflex.structure._element_law import ElementLaw
-from rockflex.structure._elements import BaseElement, FrictionDamper, ViscousDamper, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._branches import HELD, BranchLimit, Element, YieldingStoryElement
 from rockflex.structure._rocking import RockingProperties
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
@@ -79,7 +68,7 @@ def branches_of_moving_elements(
 def is_held_by_dampers(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> bool:
     """Return whether friction dampers hold the base at a rotation."""
     return key[0] != CLOSED and any(
-        isinstance(each, FrictionElement) and branch == HELD and arm_of_element(properties, each, key[0]) != 0.0
+        each.friction and branch == HELD and arm_of_element(properties, each, key[0]) != 0.0
         for each, branch in zip(elements, key[1:], strict=True)
     )
 
@@ -89,10 +78,8 @@ def friction_damper_shares(properties: RockingProperties, elements: tuple[Elemen
 
     Each takes a part in proportion to its force F_0, as at the instant in which they slide; zero for other elements.
     """
-    arms = np.array(
-        [arm_of_element(properties, each, side) if isinstance(each, FrictionElement) else 0.0 for each in elements]
-    )
-    forces = np.array([each.force if isinstance(each, FrictionElement) else 0.0 for each in elements])
+    arms = np.array([arm_of_element(properties, each, side) for each in elements])
+    forces = np.array([each.friction for each in elements])
     return side * np.sign(arms) * forces / float(forces @ np.abs(arms))
 
 
@@ -187,13 +174,9 @@ def internal_variables_of_branches(elements: tuple[Element, ...], key: Key) -> t
 
 def stiffness_of_fuses(properties: RockingProperties, side: int) -> float:
     """Return the largest Σ k r² of all but tendons, which belong to `rocking_stiffness`, in N m/rad."""
-    arm, found = properties.pivot(side).arm, 0.0
-    for each in properties.elements:
-        stiffest = each.stiffness if isinstance(each, YieldingDissipator) else 0.0
-        if isinstance(each, ElementLaw):
-            stiffest = max(branch.stiffness for branch in each.law.values())
-        found += stiffest * each.arm(arm, side) ** 2
-    return found
+    arm = properties.pivot(side).arm
+    more = ((each.largest_stiffness - each.restoring_stiffness, each.arm(arm, side)) for each in properties.elements)
+    return sum((stiffness * r**2 for stiffness, r in more), 0.0)
 
 
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
@@ -202,29 +185,7 @@ def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
         YieldingStoryElement(each.stiffness, each.yield_force, each.post_yield_ratio, None)
         for each in properties.stories
     )
-    return (*map(_element_of, properties.elements), *stories)
-
-
-def _element_of(given: BaseElement) -> Element:
-    if isinstance(given, ElementLaw):
-        return LawElement(given)
-    position = None if given.attached else given.position
-    if isinstance(given, ViscousDamper):
-        return ViscousElement(given.coefficient, position)
-    if isinstance(given, FrictionDamper):
-        # Without force there is nothing to stick or slide.
-        return FrictionElement(given.force, position) if given.force > 0.0 else ViscousElement(0.0, position)
-    rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
-    if isinstance(given, YieldingDissipator):
-        return YieldingElement(
-            given.stiffness, given.yield_force, given.post_yield_ratio, position, 0.0, given.tension_only, rupture
-        )
-    if given.post_yield_ratio is None or given.yield_force is None:
-        return ElasticElement(given.stiffness, given.initial_force, position)
-    stretched = given.initial_force / given.stiffness
-    return YieldingElement(
-        given.stiffness, given.yield_force, given.post_yield_ratio, position, stretched, True, rupture
-    )
+    return (*(each.branched() for each in properties.elements), *stories)
 
 
 def elongation_rows_of_attached(properties: RockingProperties, layout: StateLayout) -> dict[int, Array]:

@@ -10,7 +10,6 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
-from rockflex.structure._elements import FrictionDamper
 from rockflex.structure._ground import Ground, Springs
 from rockflex.structure._rocking import RockingProperties
 
@@ -131,7 +130,7 @@ def check_base_on_ground(properties: RockingProperties, ground: Ground) -> None:
     if ground.springs is not None:
         _check_under_base(properties, ground.springs)
         _check_upright(properties, ground.springs)
-    if any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in properties.elements):
+    if any(each.sticks for each in properties.elements):
         what = "slides" if ground.springs is None else "stands on springs"
         raise InputError(
             f"No model has friction dampers under a base that {what}. Use a YieldingDissipator with yield_force = F_0 "

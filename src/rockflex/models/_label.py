@@ -14,7 +14,6 @@ from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base_on_ground, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._rocking_model import RockingModel
-from rockflex.structure._elements import FrictionDamper, initial_force
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 
@@ -197,14 +196,14 @@ class Model:
             use = f"Use {simple}" + (", and leave bouc_wen out." if bouc_wen is not None else ".")
             raise InputError(f"No complete model and none with Bouc-Wen hysteresis takes {what}. {use}", field=field_)
         for each in attached:
-            if isinstance(each, FrictionDamper) and each.force > 0.0:
+            if each.sticks:
                 raise InputError(
                     f"No model has a friction damper that acts at {each.where}, away from the base. Use a "
                     "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
                     field="elements",
                 )
         if attached and ground is not None and ground.springs is not None:
-            pull = [each.cosine * (each.height or 0.0) * initial_force(each) for each in attached]
+            pull = [each.cosine * (each.height or 0.0) * each.force_at_rest for each in attached]
             if abs(sum(pull)) > _SAME * sum(map(abs, pull)):
                 raise InputError(
                     "On springs the initial forces of ties from a height must balance one another, but together they "

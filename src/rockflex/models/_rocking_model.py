@@ -12,7 +12,6 @@ from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.values import Value
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Element, ViscousElement
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -43,6 +42,7 @@ from rockflex.models._state_layout import (
     n_branch_codes,
     state_layout_of,
 )
+from rockflex.structure._branches import Element, ViscousElement
 from rockflex.structure._ground import Springs
 from rockflex.structure._rocking import RockingProperties
 

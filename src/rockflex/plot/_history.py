@@ -22,7 +22,6 @@ from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED
 from rockflex.response._history import History
 from rockflex.response._outputs import HISTORY
 from rockflex.response._response import Response, history_of
-from rockflex.structure._elements import Tendon
 from rockflex.structure._ground import Springs
 from rockflex.structure._rocking import RockingProperties
 
@@ -642,7 +641,7 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
 def _energy_layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
     """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
     ledger, elements = history.energy, history.model.properties.elements
-    only_tendons = all(isinstance(each, Tendon) for each in elements)
+    only_tendons = all(each.prestressed for each in elements)
     taken = translated("yield of tendons" if only_tendons else "taken by elements")
     stored = translated("tendons" if only_tendons else "stored in elements")
     return [

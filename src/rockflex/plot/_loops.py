@@ -33,19 +33,12 @@ from rockflex.response._moment_rotation import (
 )
 from rockflex.response._quasi_static import static_path
 from rockflex.response._response import Response
-from rockflex.structure._element_law import ElementLaw
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._pivot import Pivot
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import RockingStructure, rocking_properties_of
 
 _COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
-_ELEMENT_NAMES: dict[type[BaseElement], str] = {
-    Tendon: "tendon",
-    YieldingDissipator: "fuse",
-    ViscousDamper: "viscous damper",
-    FrictionDamper: "friction damper",
-}
 _PER_ROW = 2
 _LIMIT = 1.1
 _RUNS_PER_ROW = 3
@@ -140,20 +133,14 @@ def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
 
 def is_moment_path_independent(properties: RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
-    return all(
-        not any(branch.yields for branch in each.law.values())
-        if isinstance(each, ElementLaw)
-        else isinstance(each, Tendon) and each.post_yield_ratio is None
-        for each in properties.elements
-    )
+    return not any(each.dissipates for each in properties.elements)
 
 
 def _element_name(elements: Sequence[BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
-    words = element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
     where = element.where_in(figures.axis_unit("length"))
-    return f"{place + 1} {translated(words)}, {where}"
+    return f"{place + 1} {translated(element.words)}, {where}"
 
 
 def plot_loops(

@@ -27,7 +27,6 @@ from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, interpolated_states, only_of_run, settled_rotation
 from rockflex.response._peaks import global_histories
 from rockflex.response._tables import history_to_dataframe, history_to_dataset
-from rockflex.structure._elements import Tendon
 from rockflex.structure._ground import Springs
 
 if TYPE_CHECKING:
@@ -285,7 +284,7 @@ class History(Value):
     @property
     def tendon_force(self) -> Array:
         """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_states, n_tendons)."""
-        places = [k for k, each in enumerate(self.model.properties.elements) if isinstance(each, Tendon)]
+        places = [k for k, each in enumerate(self.model.properties.elements) if each.prestressed]
         return self.element_force[:, places]
 
     @cached_property

@@ -19,7 +19,6 @@ from rockflex.response._history import History
 from rockflex.response._moment_rotation import contact_length
 from rockflex.response._record_set import RecordSet, design_value
 from rockflex.response._response import Response, history_of
-from rockflex.structure._elements import YieldingDissipator
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -356,7 +355,7 @@ def _tendon_ratio(run: Response, history: History, _: CheckLimits) -> float:
 
 
 def _fuse_strain(run: Response, history: History, limits: CheckLimits) -> float:
-    fuses = [isinstance(each, YieldingDissipator) for each in history.model.properties.elements]
+    fuses = [each.fuse for each in history.model.properties.elements]
     if not any(fuses):
         raise MissingQuantityError(translated("there are no fuses"))
     assert limits.fuse_length is not None
@@ -364,11 +363,10 @@ def _fuse_strain(run: Response, history: History, limits: CheckLimits) -> float:
 
 
 def _rupture_ratio(run: Response, history: History, _: CheckLimits) -> float:
-    ends = [getattr(each, "rupture_elongation", None) for each in history.model.properties.elements]
-    ratios = [float(run.max_element_elongation[k]) / end for k, end in enumerate(ends) if end is not None]
-    if not ratios:
+    ends = np.array([each.breaks_at for each in history.model.properties.elements])
+    if not np.isfinite(ends).any():
         raise MissingQuantityError(translated("no element breaks at an elongation"))
-    return max(ratios)
+    return float((run.max_element_elongation / ends).max())
 
 
 def _distance_to_edge(history: History) -> tuple[Array, Array]:

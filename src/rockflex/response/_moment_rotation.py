@@ -13,7 +13,7 @@ from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.values import Value
 from rockflex.response._history import History, soil_pressure
-from rockflex.structure._elements import BaseElement
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._ground import Springs
 from rockflex.structure._rocking import RockingProperties
 

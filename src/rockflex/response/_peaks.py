@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import compress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,8 +26,6 @@ from rockflex.models._quantities import LIFT, LINEAR, Quantities, joined_quantit
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import HEADER, SIDE
 from rockflex.models._values_at_states import quantities_at_states
-from rockflex.structure._element_law import ElementLaw
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 
 
 def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:
@@ -113,7 +112,7 @@ def tracked_quantities(
     if tracked_elements(model):
         most.append(("element_moves", element_moves(model)))
         parts.append(("element_speeds", element_speeds(model)))
-    if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in under):
+    if model.springs is None and model.lifts and any(each.rate_dependent for each in under):
         parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
         parts.append((("slip",), quantities(model, ("slip",))))
@@ -207,13 +206,10 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
     of_stories = _of_stories(model, moves[len(given) :], final_state)
     if not given:
         return NONE._replace(**of_stories)
-    extremes = [_force_and_yielding(each, move) for each, move in zip(given, moves, strict=False)]  # stories follow
+    extremes = [each.extremes(*move) for each, move in zip(given, moves, strict=False)]  # stories follow
     forces, yielded = [force for force, _ in extremes], [beyond for _, beyond in extremes]
-    tendons = [
-        (each, force, beyond)
-        for each, force, beyond in zip(given, forces, yielded, strict=True)
-        if isinstance(each, Tendon)
-    ]
+    of_tendons = compress(extremes, [each.prestressed for each in given])
+    tendons = [(each, *both) for each, both in zip(model.properties.tendons, of_tendons, strict=True)]
     shares = [force / each.yield_force for each, force, _ in tendons if each.yield_force]
     return ElementPeaks(
         max_element_force=_fixed(forces),
@@ -223,7 +219,7 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
         max_tendon_force=max((force for _, force, _ in tendons), default=0.0),
         tendon_utilisation=max(shares, default=math.nan) if tendons else 0.0,
         tendon_yield=any(beyond for _, _, beyond in tendons),
-        tendon_overload=any(beyond and each.post_yield_ratio is None for each, _, beyond in tendons),
+        tendon_overload=any(beyond and not each.dissipates for each, _, beyond in tendons),
         **of_stories,
     )
 
@@ -295,59 +291,9 @@ def _extremes_of(model: RockingModel, peaks: Mapping[str, Array]) -> list[Elemen
     return found
 
 
-def _force_and_yielding(element: BaseElement, move: ElementExtremes) -> tuple[float, bool]:
-    """Return the largest |F| of an element in N, and whether it yields."""
-    if isinstance(element, ElementLaw):
-        return element.extremes(move.low, move.high)
-    return _largest_force(element, move), _yields(element, move)
-
-
-OwnElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
-
-
-def _largest_force(element: OwnElement, move: ElementExtremes) -> float:
-    if isinstance(element, ViscousDamper):
-        return element.coefficient * move.speed
-    if isinstance(element, FrictionDamper):
-        return element.force if _yields(element, move) else 0.0
-    if isinstance(element, Tendon) and element.post_yield_ratio is None:
-        return element.initial_force + element.stiffness * move.high
-    first = element.initial_force / element.stiffness if isinstance(element, Tendon) else 0.0
-    high = first + min(move.high, math.inf if element.rupture_elongation is None else element.rupture_elongation)
-    low = 0.0 if _pulls_only(element) else first + move.low
-    return max(_first_loading(element, high), _first_loading(element, -low))
-
-
-def _first_loading(element: Tendon | YieldingDissipator, stretch: float) -> float:
-    """Return the force of a bar that has never yielded at a stretch in m, counted from zero force."""
-    k, ratio, limit = element.stiffness, element.post_yield_ratio or 0.0, element.yield_force or 0.0
-    elastic = k * stretch
-    return elastic if elastic <= limit else max(ratio * elastic + (1.0 - ratio) * limit, limit)
-
-
-def _yields(element: OwnElement, move: ElementExtremes) -> bool:
-    """Return whether an element yields or slides; of an elastic tendon, whether it exceeds its yield force."""
-    if isinstance(element, ViscousDamper):
-        return False
-    if isinstance(element, FrictionDamper):
-        return move.low != 0.0 or move.high != 0.0
-    if isinstance(element, Tendon):
-        limit = math.inf if element.yield_force is None else element.yield_force
-        return element.initial_force + element.stiffness * move.high > limit
-    low = 0.0 if element.tension_only else move.low
-    return element.stiffness * max(move.high, -low) > element.yield_force
-
-
-def _pulls_only(element: Tendon | YieldingDissipator) -> bool:
-    return element.tension_only if isinstance(element, YieldingDissipator) else True
-
-
 def _remaining_prestress(model: RockingModel, final_state: Array) -> list[float]:
     """Return the force of each tendon in contact after the end of a run, in N; zero if it is slack or broken."""
-    plastic = plastic_stretches(model, _as_history(model, final_state)[None])[0]
-    found: list[float] = []
-    for each, lost in zip(model.properties.elements, plastic.tolist(), strict=False):  # stories follow
-        if isinstance(each, Tendon):  # the plastic stretch of an elastic one is zero
-            share = (1.0 - (each.post_yield_ratio or 0.0)) * each.stiffness * lost
-            found.append(0.0 if math.isnan(lost) else max(each.initial_force - share, 0.0))
-    return found
+    elements = model.properties.elements  # stories follow
+    plastic = plastic_stretches(model, _as_history(model, final_state)[None])[0, : len(elements)].tolist()
+    left = compress(plastic, [each.prestressed for each in elements])  # zero of an elastic one
+    return [each.remaining_prestress(lost) for each, lost in zip(model.properties.tendons, left, strict=True)]

@@ -10,7 +10,6 @@ from rockflex.foundation.checks import checked_magnitude, checked_positive
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.values import Value
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Element
 from rockflex.models._elements import RIGHT
 from rockflex.models._rocking_model import RockingModel
 from rockflex.response._quasi_static import (
@@ -22,6 +21,7 @@ from rockflex.response._quasi_static import (
     static_tension,
 )
 from rockflex.structure._analysis import FloorModes
+from rockflex.structure._branches import Element
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from rockflex.foundation.arrays import Array, Bools
-from rockflex.models._element import Element, FrictionElement
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of_element, elements_of
 from rockflex.models._rocking_model import LEVEL, Pose
 from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnSprings
+from rockflex.structure._branches import Element
 from rockflex.structure._ground import Springs
 from rockflex.structure._rocking import RockingProperties
 
@@ -143,7 +143,7 @@ def next_branch(element: Element, place: StaticElementState, branch: int) -> Sta
 
 def does_static_force_jump(element: Element, before: StaticElementState, after: StaticElementState) -> bool:
     """Return whether the force jumps between two branches."""
-    return before.branch != after.branch and (element.broken(after.branch) or isinstance(element, FrictionElement))
+    return before.branch != after.branch and (element.broken(after.branch) or element.friction > 0.0)
 
 
 def plastic_stretch(element: Element, place: StaticElementState) -> float:

@@ -33,7 +33,8 @@ from rockflex.response._peaks import (
 )
 from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import YieldingStory, element_parameters
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._elements import ELEMENTS
 from rockflex.structure._ground import Springs
 from rockflex.structure._law_bars import BARS
 from rockflex.structure._rocking import RockingProperties
@@ -58,10 +59,6 @@ KNOWN_OR_NOT = ("top_height", "base_mass")
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
-ELEMENTS: tuple[type[BaseElement], ...] = (
-    *(Tendon, YieldingDissipator, ViscousDamper, FrictionDamper),
-    *BARS.values(),
-)
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
@@ -155,7 +152,7 @@ def _of_elements(arrays: dict[str, Any], history: History | None) -> dict[str, A
     elements = () if history is None else history.model.properties.elements
     for name, values in found.items():
         values.setflags(write=False)
-        known = sum(isinstance(each, Tendon) for each in elements) if name == "remaining_prestress" else len(elements)
+        known = sum(each.prestressed for each in elements) if name == "remaining_prestress" else len(elements)
         if name in OF_STORIES:
             known = values.size
         if values.ndim != 1 or (history is not None and values.size != known):
@@ -192,7 +189,7 @@ def _element_from_file(kind: str, **values: Any) -> BaseElement:
     InputError
         If no installed package has such an element.
     """
-    known = {each.__name__: each for each in (*ELEMENTS, *registered_objects("elements").values())}
+    known = {each.__name__: each for each in (ELEMENTS | BARS | registered_objects("elements")).values()}
     if kind not in known:
         raise InputError(
             f"The structure has an element {kind!r}, which no installed package registers. Install the package that "

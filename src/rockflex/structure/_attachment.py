@@ -108,6 +108,11 @@ class Attachment:
         return self.between is not None or self.height is not None
 
     @property
+    def place(self) -> float | None:
+        """Its position under the base in m; None if it is attached."""
+        return None if self.attached else self.position
+
+    @property
     def where(self) -> str:
         """Where the element acts, in words."""
         return self.where_in(named_unit("m"))

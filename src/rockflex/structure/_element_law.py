@@ -1,8 +1,7 @@
 """Elements of any law: branches as data, on each of which the force is linear."""
 
 import math
-import re
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import Field, dataclass, fields
 from functools import cached_property
@@ -11,11 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite, checked_instance, real_or_nan
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.shown import shown
-from rockflex.structure._attachment import Attachment
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._branches import BranchLimit, Element, ElementTension
 
 ROUNDING = 1e-9  # relative: by how much forces and energies may differ that must be equal
 MAX_BRANCHES = 32
@@ -98,7 +99,7 @@ class SlowState(NamedTuple):
     internal: float
 
 
-class ElementLaw(Attachment, ABC):
+class ElementLaw(BaseElement):
     """An element whose law is given by its branches, between base and ground or attached to floors.
 
     Derive a frozen dataclass from it: its fields are the parameters, numbers or texts, among them the `position` in m
@@ -184,10 +185,29 @@ class ElementLaw(Attachment, ABC):
         force = np.interp(elongation, places, forces)
         return work[below] + 0.5 * (forces[below] + force) * (elongation - places[below])
 
+    def branched(self) -> Element:
+        """Return it as its branches, numbered, of which models make the phases of a run."""
+        return LawElement(self)
+
     @property
-    def words(self) -> str:
-        """Name of the class in plain words: "flag shaped bar"."""
-        return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", type(self).__name__).lower()
+    def force_at_rest(self) -> float:
+        """Force in N while the base is in contact, as built: `initial_force`."""
+        return self.initial_force
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether a branch yields."""
+        return any(branch.yields for branch in self.law.values())
+
+    @property
+    def recentres(self) -> bool:
+        """Whether it helps to close the base: it cannot keep it open."""
+        return self.locked_force == 0.0
+
+    @property
+    def largest_stiffness(self) -> float:
+        """Largest stiffness of its branches in N/m."""
+        return max(branch.stiffness for branch in self.law.values())
 
     @cached_property
     def initial_force(self) -> float:
@@ -195,7 +215,7 @@ class ElementLaw(Attachment, ABC):
         return next(iter(self.law.values())).force
 
     @cached_property
-    def locked_force(self) -> float:
+    def locked_force(self) -> float:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Largest force in N with which the element can keep a base from closing, after any slow movement."""
         far = elongation_beyond_branches(self)
         closing = [slow_path(self, [sign * far, 0.0])[-1] for sign in (1.0, -1.0)]
@@ -205,13 +225,100 @@ class ElementLaw(Attachment, ABC):
         """Return the force in N as built, stretched slowly by an elongation in m."""
         return tension_of(self, slow_path(self, [elongation])[-1])
 
-    def extremes(self, low: float, high: float) -> tuple[float, bool]:
+    def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:  # noqa: ARG002
         """Return the largest |F| in N between two elongations in m, and whether it yields, in slow cycles to both."""
         cycles = [slow_path(self, [*ends, *ends]) for ends in ((high, low), (low, high))]
         states = [state for cycle in cycles for state in cycle]
         return max(abs(tension_of(self, state)) for state in states), any(
             self.law[state.branch].yields for state in states
         )
+
+
+@dataclass(frozen=True)
+class LawElement:
+    """An element of any law: its branches in their order. It remembers its internal variable and its branch."""
+
+    law: ElementLaw
+
+    @cached_property
+    def parts(self) -> tuple[Branch, ...]:
+        """Its branches."""
+        return tuple(self.law.law.values())
+
+    @cached_property
+    def places(self) -> dict[str, int]:
+        """Their numbers, by name."""
+        return {name: place for place, name in enumerate(self.law.law)}
+
+    @property
+    def position(self) -> float | None:
+        return self.law.place
+
+    @property
+    def n_internal(self) -> int:
+        return 2
+
+    @property
+    def stretches(self) -> float | None:
+        return 0.0
+
+    @property
+    def friction(self) -> float:
+        return 0.0
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return tuple(range(len(self.parts)))
+
+    def tension(self, branch: int) -> ElementTension:
+        part = self.parts[branch]
+        return ElementTension(part.stiffness, 0.0, part.force, part.internal)
+
+    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
+        ends = self.parts[branch].ends
+        return tuple(BranchLimit(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
+
+    def yields(self, branch: int) -> bool:
+        return self.parts[branch].yields != 0
+
+    def broken(self, branch: int) -> bool:
+        del branch
+        return False
+
+    def direction(self, branch: int) -> int:
+        return self.parts[branch].yields
+
+    def reversal_offset(self, branch: int) -> float | None:
+        return self.parts[branch].offset if self.parts[branch].yields else None
+
+    def stopped(self, branch: int) -> int:
+        return self.places[self.parts[branch].turns_to] if self.parts[branch].yields else branch
+
+    def moving(self, branch: int, direction: int) -> int:
+        del direction
+        return branch
+
+    def branch_code(self, branch: int) -> float | None:
+        return float(branch)
+
+    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+        state = slow_path(self.law, [elongation])[-1]
+        place = self.places[state.branch]
+        return place, (state.internal, float(place))
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del elongation
+        return memory[:, 1].astype(np.int64)
+
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        del force
+        return np.asarray(self.law.stored_energy(elongation, plastic), dtype=float)
+
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """The work that is not stored where m changes; the force is linear between adjacent states."""
+        del sweep
+        lost = 0.5 * (force[1:] + force[:-1]) * np.diff(elongation) - np.diff(stored)
+        return np.where(np.diff(plastic) == 0.0, 0.0, lost)
 
 
 def elongation_beyond_branches(law: ElementLaw) -> float:

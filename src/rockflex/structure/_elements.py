@@ -1,15 +1,17 @@
 """Tendons, yielding dissipators, viscous and friction dampers: under the base, between floors or from a height."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar, Self
 
 from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.language import translated
 from rockflex.foundation.shown import shown
-from rockflex.structure._attachment import PLACE, Attachment, Position, element_parameters
-from rockflex.structure._element_law import ElementLaw
+from rockflex.structure._attachment import Position
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._branches import ElasticElement, Element, FrictionElement, ViscousElement, YieldingElement
 
 _RATIO_REMEDY = "It is the stiffness after yielding over the elastic stiffness: 2 % is 0.02."
 PostYieldRatio = Annotated[
@@ -29,7 +31,7 @@ TendonYieldRatio = Annotated[
 
 @described
 @dataclass(frozen=True, repr=False)
-class Tendon(Attachment):
+class Tendon(BaseElement):
     """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
 
     While the base rocks about a pivot at the distance r, the tendon is stretched by the gap that opens at its place,
@@ -52,6 +54,8 @@ class Tendon(Attachment):
     """
 
     title: ClassVar[str] = "Tendon"
+    drawn_as: ClassVar[str] = "tendons"
+    prestressed: ClassVar[bool] = True
 
     initial_force: Annotated[
         float, Described("the force while the base stands on the ground", "N", rule="zero or positive")
@@ -101,6 +105,99 @@ class Tendon(Attachment):
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
             _check_rupture_elongation(self.rupture_elongation, yields_at)
 
+    @property
+    def yield_words(self) -> tuple[str, str]:
+        """What a report says of one that did not yield, and of one that did."""
+        return translated("elastic"), translated("beyond F_y" if self.post_yield_ratio is None else "yielded")
+
+    def branched(self) -> Element:
+        """Return it as its branches: elastic, slack, and those of a bar that yields."""
+        if self.post_yield_ratio is None or self.yield_force is None:
+            return ElasticElement(self.stiffness, self.initial_force, self.place)
+        return YieldingElement(
+            self.stiffness,
+            self.yield_force,
+            self.post_yield_ratio,
+            self.place,
+            stretched=self.initial_force / self.stiffness,
+            pulls_only=True,
+            rupture=self.breaks_at,
+        )
+
+    def slow_force(self, elongation: float) -> float:
+        """Return the force in N as built, stretched slowly by an elongation in m."""
+        if elongation >= self.breaks_at:
+            return 0.0
+        pull = self.stiffness * elongation + self.initial_force
+        return max(_force_beyond_yield(pull, self.yield_force, self.post_yield_ratio), 0.0)
+
+    def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:  # noqa: ARG002
+        """Return the largest force in N, and whether it yields; if it stays elastic, whether it exceeds F_y."""
+        force = self.initial_force + self.stiffness * high
+        yields = self.yield_force is not None and force > self.yield_force
+        if self.post_yield_ratio is not None:
+            stretch = self.initial_force / self.stiffness + min(high, self.breaks_at)
+            force = _force_in_first_loading(stretch, self.stiffness, self.yield_force or 0.0, self.post_yield_ratio)
+        return force, yields
+
+    def remaining_prestress(self, plastic_stretch: float) -> float:
+        """Return the force in N in contact after a plastic stretch in m, which is NaN if it is broken."""
+        lost = (1.0 - (self.post_yield_ratio or 0.0)) * self.stiffness * plastic_stretch
+        return 0.0 if math.isnan(plastic_stretch) else max(self.initial_force - lost, 0.0)
+
+    @property
+    def force_at_rest(self) -> float:
+        """F_0 in N."""
+        return self.initial_force
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it yields."""
+        return self.post_yield_ratio is not None
+
+    @property
+    def recentres(self) -> bool:
+        """Whether it helps to close the base: it pulls."""
+        return True
+
+    @property
+    def largest_stiffness(self) -> float:
+        """K in N/m."""
+        return self.stiffness
+
+    @property
+    def restoring_stiffness(self) -> float:
+        """K in N/m."""
+        return self.stiffness
+
+    def scaled(self, factor: float, *, size: bool) -> Self | None:
+        """Return it with a factor on its size or on its initial force; None where nothing is left of it."""
+        force = self.initial_force * factor
+        if not size:
+            return replace(self, initial_force=force)
+        if factor == 0.0:
+            return None
+        limit = None if self.yield_force is None else self.yield_force * factor
+        return replace(self, initial_force=force, stiffness=self.stiffness * factor, yield_force=limit)
+
+    def compared_parameters(self) -> dict[str, Any]:
+        """Return its parameters; the yield force is only compared with, unless it yields."""
+        found = super().compared_parameters()
+        return found if self.dissipates else found | {"yield_force": None}
+
+
+def _force_beyond_yield(force: float, limit: float | None, ratio: float | None) -> float:
+    """Return what is left in N of the force of an elastic bar if it yields at a limit."""
+    if ratio is None or limit is None or abs(force) <= limit:
+        return force
+    return math.copysign(limit + ratio * (abs(force) - limit), force)
+
+
+def _force_in_first_loading(stretch: float, stiffness: float, limit: float, ratio: float) -> float:
+    """Return the force in N of a bar that has never yielded at a stretch in m, counted from zero force."""
+    elastic = stiffness * stretch
+    return elastic if elastic <= limit else max(ratio * elastic + (1.0 - ratio) * limit, limit)
+
 
 def _check_rupture_elongation(limit: float, yields_at: float) -> None:
     if limit <= yields_at:
@@ -113,7 +210,7 @@ def _check_rupture_elongation(limit: float, yields_at: float) -> None:
 
 @described
 @dataclass(frozen=True, repr=False)
-class YieldingDissipator(Attachment):
+class YieldingDissipator(BaseElement):
     """A fuse between the base and the ground that yields in tension and compression, with kinematic hardening.
 
     At a distance r from the pivot it is stretched by the gap that opens there, δ = 2 r sin(|θ|/2), to first order
@@ -136,6 +233,8 @@ class YieldingDissipator(Attachment):
     """
 
     title: ClassVar[str] = "Yielding dissipator"
+    drawn_as: ClassVar[str] = "fuse"
+    fuse: ClassVar[bool] = True
 
     stiffness: Annotated[float, Described("the elastic stiffness", "N/m", rule="positive")]
     yield_force: Annotated[float, Described("the force at which the fuse yields", "N", rule="positive")]
@@ -164,10 +263,72 @@ class YieldingDissipator(Attachment):
         if self.rupture_elongation is not None:
             _check_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness)
 
+    @property
+    def words(self) -> str:
+        """What it is called in a sentence."""
+        return "fuse"
+
+    @property
+    def yield_words(self) -> tuple[str, str]:
+        """What a report says of one that did not yield, and of one that did."""
+        return translated("elastic"), translated("yielded")
+
+    def branched(self) -> Element:
+        """Return it as its branches: elastic, yielding to either side, slack and broken."""
+        return YieldingElement(
+            self.stiffness,
+            self.yield_force,
+            self.post_yield_ratio,
+            self.place,
+            pulls_only=self.tension_only,
+            rupture=self.breaks_at,
+        )
+
+    def slow_force(self, elongation: float) -> float:
+        """Return the force in N as built, stretched slowly by an elongation in m."""
+        if elongation >= self.breaks_at:
+            return 0.0
+        pull = _force_beyond_yield(self.stiffness * elongation, self.yield_force, self.post_yield_ratio)
+        return max(pull, 0.0) if self.tension_only else pull
+
+    def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:  # noqa: ARG002
+        """Return the largest |F| in N, and whether it yields."""
+        pushed = 0.0 if self.tension_only else -low
+        k, limit, ratio = self.stiffness, self.yield_force, self.post_yield_ratio
+        forces = (_force_in_first_loading(each, k, limit, ratio) for each in (min(high, self.breaks_at), pushed))
+        return max(forces), k * max(high, pushed) > limit
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it yields: always."""
+        return True
+
+    @property
+    def locked_force(self) -> float:
+        """(1 - α) F_y in N: after yielding it returns to δ = 0 with z = - F_y. Zero if it cannot push."""
+        return 0.0 if self.tension_only else (1.0 - self.post_yield_ratio) * self.yield_force
+
+    @property
+    def largest_stiffness(self) -> float:
+        """K in N/m."""
+        return self.stiffness
+
+    @property
+    def dissipator_force(self) -> float | None:
+        """F_y in N."""
+        return self.yield_force
+
+    def scaled(self, factor: float, *, size: bool) -> Self | None:
+        """Return it with a factor on its size or on its yield force; None where nothing is left of it."""
+        if factor == 0.0:
+            return None
+        stiffness = self.stiffness * (factor if size else 1.0)
+        return replace(self, stiffness=stiffness, yield_force=self.yield_force * factor)
+
 
 @described
 @dataclass(frozen=True, repr=False)
-class ViscousDamper(Attachment):
+class ViscousDamper(BaseElement):
     """A linear viscous damper between the base and the ground: F = c δ'.
 
     Raises
@@ -186,14 +347,45 @@ class ViscousDamper(Attachment):
     """
 
     title: ClassVar[str] = "Viscous damper"
+    drawn_as: ClassVar[str] = "damper"
+    rate_dependent: ClassVar[bool] = True
 
     coefficient: Annotated[float, Described("the force over the velocity", "N s/m", rule="zero or positive")]
     position: Position = 0.0
 
+    @property
+    def yield_words(self) -> tuple[str, str]:
+        """Nothing: it does not yield."""
+        return "", ""
+
+    def branched(self) -> Element:
+        """Return it as its only branch."""
+        return ViscousElement(self.coefficient, self.place)
+
+    def slow_force(self, elongation: float) -> float:
+        """Return the force in N as built, stretched slowly by an elongation in m: zero."""
+        del elongation
+        return 0.0
+
+    def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:
+        """Return the largest |F| in N, and that it does not yield."""
+        del low, high
+        return self.coefficient * speed, False
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it damps: always."""
+        return True
+
+    @property
+    def largest_stiffness(self) -> float:
+        """Zero."""
+        return 0.0
+
 
 @described
 @dataclass(frozen=True, repr=False)
-class FrictionDamper(Attachment):
+class FrictionDamper(BaseElement):
     """A friction damper between the base and the ground: F = ± F_0 while it slides; it sticks in between.
 
     Raises
@@ -211,13 +403,66 @@ class FrictionDamper(Attachment):
     """
 
     title: ClassVar[str] = "Friction damper"
+    drawn_as: ClassVar[str] = "friction"
 
     force: Annotated[float, Described("the force at which the damper slides", "N", rule="zero or positive")]
     position: Position = 0.0
 
+    @property
+    def yield_words(self) -> tuple[str, str]:
+        """What a report says of one that did not slide, and of one that did."""
+        return translated("did not slide"), translated("slid")
 
-BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper | ElementLaw
-"""Any element between a base and the ground."""
+    def branched(self) -> Element:
+        """Return it as its branches: held, and sliding to either side; without force it neither sticks nor slides."""
+        return FrictionElement(self.force, self.place) if self.sticks else ViscousElement(0.0, self.place)
+
+    def slow_force(self, elongation: float) -> float:
+        """Return the force in N as built, stretched slowly by an elongation in m."""
+        return math.copysign(self.force, elongation)
+
+    def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:  # noqa: ARG002
+        """Return the largest |F| in N, and whether it slides."""
+        slides = low != 0.0 or high != 0.0
+        return self.force if slides else 0.0, slides
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether it slides: always."""
+        return True
+
+    @property
+    def largest_stiffness(self) -> float:
+        """Zero: it sticks, or slides with a constant force."""
+        return 0.0
+
+    @property
+    def locked_force(self) -> float:
+        """F_0 in N."""
+        return self.force
+
+    @property
+    def sticks(self) -> bool:
+        """Whether it has a force."""
+        return self.force > 0.0
+
+    @property
+    def dissipator_force(self) -> float | None:
+        """F_0 in N."""
+        return self.force
+
+    def scaled(self, factor: float, *, size: bool) -> Self | None:  # noqa: ARG002
+        """Return it with a factor on its force; None where nothing is left of it."""
+        return replace(self, force=self.force * factor) if factor else None
+
+
+ELEMENTS: dict[str, type[BaseElement]] = {
+    "tendon": Tendon,
+    "yielding_dissipator": YieldingDissipator,
+    "viscous_damper": ViscousDamper,
+    "friction_damper": FrictionDamper,
+}
+"""The classes of this module by the names of their kinds in files."""
 
 
 def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
@@ -242,33 +487,9 @@ def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
     return items
 
 
-def element_locking_force(element: BaseElement) -> float:
-    """Return the largest force in N with which an element can keep a base from closing.
-
-    A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
-    tendon or a viscous damper locks nothing in.
-    """
-    if isinstance(element, ElementLaw):
-        return element.locked_force
-    if isinstance(element, YieldingDissipator) and not element.tension_only:
-        return (1.0 - element.post_yield_ratio) * element.yield_force
-    return element.force if isinstance(element, FrictionDamper) else 0.0
-
-
-def element_pushover_force(element: BaseElement, elongation: float) -> float:
-    """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
-    if isinstance(element, ElementLaw):
-        return element.slow_force(elongation)
-    if isinstance(element, FrictionDamper):
-        return math.copysign(element.force, elongation)
-    if isinstance(element, ViscousDamper) or elongation >= (element.rupture_elongation or math.inf):
-        return 0.0
-    pull = element.stiffness * elongation + (element.initial_force if isinstance(element, Tendon) else 0.0)
-    if element.post_yield_ratio is not None and element.yield_force is not None and abs(pull) > element.yield_force:
-        beyond = element.post_yield_ratio * (abs(pull) - element.yield_force)
-        pull = math.copysign(element.yield_force + beyond, pull)
-    pushes = isinstance(element, YieldingDissipator) and not element.tension_only
-    return pull if pushes else max(pull, 0.0)
+def tendons_among(elements: Iterable[BaseElement]) -> tuple[Tendon, ...]:
+    """Return the tendons among elements: those that are prestressed."""
+    return tuple(each for each in elements if isinstance(each, Tendon))
 
 
 def are_elements_symmetric(elements: Sequence[BaseElement]) -> bool:
@@ -285,27 +506,7 @@ def are_elements_symmetric(elements: Sequence[BaseElement]) -> bool:
 
 
 def _element_values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
-    if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
-        yields = element.post_yield_ratio is not None
-        beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)
-        return "Tendon", (
-            distance,
-            element.initial_force,
-            element.stiffness,
-            *beyond,
-            element.rupture_elongation or 0.0,
-        )
-    rest = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
+    rest = element.compared_parameters()
     words = [f"{key}={value!r}" for key, value in rest.items() if not isinstance(value, float | None)]
     numbers = (float(value or 0.0) for value in rest.values() if isinstance(value, float | None))
     return " ".join([type(element).__name__, *words]), (distance, *numbers)
-
-
-def closes(element: BaseElement) -> bool:
-    """Return whether an element helps to close the base, and is no dissipator that can keep it open."""
-    return element.locked_force == 0.0 if isinstance(element, ElementLaw) else isinstance(element, Tendon)
-
-
-def initial_force(element: BaseElement) -> float:
-    """Return the force in N of an element as built while the base is in contact."""
-    return element.initial_force if isinstance(element, Tendon | ElementLaw) else 0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from rockflex.foundation.arrays import Array
 from rockflex.structure._analysis import ModalProperties
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import ModifiedStructure, Structure
@@ -46,12 +46,6 @@ SYMBOLS: dict[str, Symbol] = {
 
 A spring is 1 wide to either side. The others are named after their colours on the page.
 """
-_SYMBOL_OF: dict[type[BaseElement], str] = {
-    Tendon: "tendons",
-    YieldingDissipator: "fuse",
-    ViscousDamper: "damper",
-    FrictionDamper: "friction",
-}
 
 
 class Stroke(NamedTuple):
@@ -121,7 +115,7 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     strokes = (*_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
-    symbols = [_SYMBOL_OF.get(type(each), "law") for each in p.elements]
+    symbols = [each.drawn_as for each in p.elements]
     held = tuple(zip(symbols, ends, strict=True))
     return StructureOutline(kind, heights, shapes, left, right, strokes, held)
 
@@ -182,6 +176,6 @@ def _element_ends(
         foot = (-math.copysign(reach, element.cosine), element.height - lean * reach, GROUND)
         return [foot, (0.0, element.height, BODY)]
     x = element.position
-    if isinstance(element, Tendon):
+    if element.prestressed:
         return [(x, -_SUNK * top, GROUND), (x, _TENDON * top, BODY)]
     return [(x, 0.0, GROUND), (x, min(_BRACKET * max(top, right - left), _MAX_BRACKET * top), BODY)]

@@ -8,7 +8,7 @@ from rockflex.foundation.checks import real_or_nan
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
-from rockflex.structure._elements import BaseElement, Tendon, element_locking_force, initial_force
+from rockflex.structure._base_element import BaseElement
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
 """Names of the `RockingProperties` that `build_pivot` needs."""
@@ -141,15 +141,14 @@ def build_pivot(
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
     towards = 1 if alike else side
     elements = [each for each in elements if not each.attached]
-    tendons = [each for each in elements if isinstance(each, Tendon)]
-    distances = [each.arm(arm, towards) for each in tendons]
+    arms = [(each, each.arm(arm, towards)) for each in elements]
     if alike:
-        prestress = sum(map(initial_force, elements), 0.0) * arm
-        pull = sum((each.stiffness for each in tendons), 0.0) * arm
+        prestress = sum((each.force_at_rest for each in elements), 0.0) * arm
+        pull = sum((each.restoring_stiffness for each in elements), 0.0) * arm
     else:
-        prestress = sum((initial_force(each) * each.arm(arm, towards) for each in elements), 0.0)
-        pull = sum((each.stiffness * r for each, r in zip(tendons, distances, strict=True)), 0.0)
-    stiffness = sum((each.stiffness * r**2 for each, r in zip(tendons, distances, strict=True)), 0.0)
+        prestress = sum((each.force_at_rest * r for each, r in arms), 0.0)
+        pull = sum((each.restoring_stiffness * r for each, r in arms), 0.0)
+    stiffness = sum((each.restoring_stiffness * r**2 for each, r in arms), 0.0)
     return Pivot(
         side=side,
         arm=arm,
@@ -158,7 +157,7 @@ def build_pivot(
         prestress_moment=prestress,
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
-        dissipator_moment=sum((element_locking_force(each) * abs(each.arm(arm, towards)) for each in elements), 0.0),
+        dissipator_moment=sum((each.locked_force * abs(r) for each, r in arms), 0.0),
         rocking_stiffness=stiffness - l0r * GRAVITY,
         nominal_overturning_rotation=limit,
         uplift_acceleration=(weight + prestress) / l0r,

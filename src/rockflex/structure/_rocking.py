@@ -24,15 +24,8 @@ from rockflex.foundation.schema import DAMPING_RATIOS, HalfWidth
 from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import YieldingStory
-from rockflex.structure._elements import (
-    BaseElement,
-    Tendon,
-    are_elements_symmetric,
-    base_element_tuple,
-    closes,
-    element_pushover_force,
-    initial_force,
-)
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._elements import Tendon, are_elements_symmetric, base_element_tuple, tendons_among
 from rockflex.structure._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side
 from rockflex.structure._rocking_checks import (
     SUM_TOLERANCE,
@@ -318,12 +311,12 @@ class RockingProperties(HtmlTable, Value):
     @property
     def tendons(self) -> tuple[Tendon, ...]:
         """The tendons among the elements."""
-        return tuple(each for each in self.elements if isinstance(each, Tendon))
+        return tendons_among(self.elements)
 
     @property
     def prestress(self) -> float:
         """Sum of the initial forces of the elements under the base in N, those of tendons for example."""
-        return sum((initial_force(each) for each in self.elements if not each.attached), 0.0)
+        return sum((each.force_at_rest for each in self.elements if not each.attached), 0.0)
 
     @cached_property
     def resting_reaction(self) -> float:
@@ -346,7 +339,7 @@ class RockingProperties(HtmlTable, Value):
     @property
     def axial_stiffness(self) -> float:
         """Sum of the stiffnesses of tendons under the base in N/m: against lifting it without rotation."""
-        return sum((each.stiffness for each in self.tendons if not each.attached), 0.0)
+        return sum((each.restoring_stiffness for each in self.elements if not each.attached), 0.0)
 
     @property
     def tendon_stiffness(self) -> float:
@@ -393,7 +386,7 @@ class RockingProperties(HtmlTable, Value):
         found: list[float] = []
         for pivot in self.pivots:
             arms = [(each, each.arm(pivot.arm, pivot.side)) for each in self.elements if not each.attached]
-            moments = [(closes(each), element_pushover_force(each, r * turn) * r) for each, r in arms]
+            moments = [(each.recentres, each.slow_force(r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
             closing = pivot.weight_moment + sum((moment for helps, moment in moments if helps), 0.0)
             found.append(closing / locked if locked > 0.0 else math.inf)

@@ -16,9 +16,7 @@ from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.shown import shown
 from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import Attachment, YieldingStory
-from rockflex.structure._elements import (
-    BaseElement,
-)
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._pivot import pivot_inertia
 
 SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept

@@ -13,7 +13,8 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._analysis import ModalProperties
-from rockflex.structure._elements import BaseElement, Tendon, base_element_tuple
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._elements import Tendon, base_element_tuple, tendons_among
 from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._rocking import RockingProperties
 
@@ -247,7 +248,7 @@ class Restrained(ModifiedStructure):
     @property
     def tendons(self) -> tuple[Tendon, ...]:
         """The tendons among the elements."""
-        return tuple(each for each in self.elements if isinstance(each, Tendon))
+        return tendons_among(self.elements)
 
     def _changes(self) -> dict[str, Any]:
         return {"elements": self.elements}

@@ -13,7 +13,6 @@ from rockflex.foundation.language import translated
 from rockflex.response._outputs import outputs_of
 from rockflex.response._respond import BY_STORY, MAX_OF_STORIES, NAMES
 from rockflex.response._response import Response, complete_model_label, leaves_range
-from rockflex.structure._elements import Tendon
 from rockflex.structure._rocking import RockingProperties
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ def result_columns(
 
 
 def _has_dissipating_elements(properties: RockingProperties) -> bool:
-    return any(not isinstance(each, Tendon) or each.post_yield_ratio is not None for each in properties.elements)
+    return any(each.dissipates or not each.prestressed for each in properties.elements)
 
 
 REACTION = "min_vertical_reaction"

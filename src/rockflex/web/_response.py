@@ -18,7 +18,6 @@ from rockflex.response._history import History
 from rockflex.response._limit_checks import NO_LIMIT, check, check_in_units
 from rockflex.response._record_set import RecordSet
 from rockflex.response._response import Response, warnings_of_energy, warnings_of_response
-from rockflex.structure._elements import Tendon, YieldingDissipator
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._earthquake import chosen_motion
@@ -53,20 +52,14 @@ def elements_response_view(p: RockingProperties, response: Response, *, energies
             "elongation": elongation,
             "energy": energy,
             "yielded": yielded,
-            "broken": _elongation_at_break(element) <= elongation,
-            "prestress": next(prestress) if isinstance(element, Tendon) else None,
+            "broken": element.breaks_at <= elongation,
+            "prestress": next(prestress) if element.prestressed else None,
         }
         for element, force, elongation, yielded, energy in zip(
             p.elements, *(column.tolist() for column in columns), dissipated, strict=True
         )
     ]
     return {"label": response.model, "rows": rows}
-
-
-def _elongation_at_break(element: object) -> float:
-    """Return the elongation in m at which an element breaks; infinite if it never does."""
-    found = element.rupture_elongation if isinstance(element, Tendon | YieldingDissipator) else None
-    return float("inf") if found is None else found
 
 
 def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, Any]]:

@@ -11,7 +11,6 @@ from rockflex.fragility._limit_states import NOMINAL, ROCKING
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
-from rockflex.structure._elements import BaseElement
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.studies._prepared_case import yielding_model_labels
@@ -238,23 +237,23 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
     given: Any = entry.table
     lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
+    made = ", ".join(_python_call(type(each).__name__, element_parameters(each)) for each in elements)
+    e = entry.eccentricity
+    based = ({"eccentricity": _python_literal(e)} if e else {}) | ({"elements": f"[{made}]"} if made else {})
     if entry.leaning_masses is not None:
         lines.append(f"structure = rf.Leaning(structure, {_python_literal(entry.leaning_masses)})")
     if entry.stories is not None:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
-    based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
     if based and entry.kind in ("properties", "block"):
         return [
             *lines,
             "from dataclasses import replace",
-            f"structure = replace(structure, {_python_named_arguments(based)})",
+            f"structure = replace(structure, {', '.join(f'{name}={code}' for name, code in based.items())})",
         ]
     wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
-    return lines + [
-        f"structure = rf.{wraps[name]}(structure, {_python_literal(value)})" for name, value in based.items()
-    ]
+    return [*lines, *(f"structure = rf.{wraps[name]}(structure, {code})" for name, code in based.items())]
 
 
 def _motion_code_lines(state: PageState, upload_name: str) -> list[str]:
@@ -284,8 +283,6 @@ def _python_named_arguments(values: Mapping[str, Any]) -> str:
 def _python_literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _python_literal(value.tolist())
-    if isinstance(value, BaseElement):
-        return _python_call(type(value).__name__, element_parameters(value))
     if isinstance(value, LumpedMasses | Section):
         return _python_call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):

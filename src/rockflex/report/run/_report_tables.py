@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.descriptions import described_arguments
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import rounded_number
@@ -22,8 +23,7 @@ from rockflex.response._history import History
 from rockflex.response._outputs import OF_MOTION, OUTPUTS, REACTIONS, outputs_of
 from rockflex.response._response import Response
 from rockflex.structure._attachment import PLACE, YieldingStory, element_parameters
-from rockflex.structure._element_law import ElementLaw
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._uplifted import UpliftedModes, uplifted_modes
 
@@ -36,6 +36,8 @@ SIDES = ("right", "left")
 STATUS = {"no_uplift": "no uplift", "rocking": "rocking", "overturned": "overturned"}
 ASSUMPTIONS = ("Impact law", "Hysteresis", "Ground", "Friction", "Initial state")
 DAGGER = "†"
+_SYMBOLS = {"initial_force": "F_0", "stiffness": "k", "yield_force": "F_y", "coefficient": "c", "force": "F_0"}
+_QUANTITIES = {"N": "force", "N/m": "stiffness", "N s/m": "damping", "m": "displacement"}  # of parameters of elements
 
 
 @dataclass(frozen=True)
@@ -440,38 +442,31 @@ def _element_table_row(
         ReportCell(properties),
         value_cell(force, f"max_element_force_{place + 1}", units.of("force").size),
         value_cell(elongation, f"max_element_elongation_{place + 1}", units.of("displacement").size),
-        ReportCell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
+        ReportCell(state[yielded], None, "", yielded and element.prestressed),
     ]
 
 
 def describe_element(element: BaseElement, units: UnitSystem) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
-    if isinstance(element, ElementLaw):
-        values = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
-        properties = ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
-        return translated(element.words), properties, ("", translated("yielded"))
-    if isinstance(element, ViscousDamper):
-        return translated("viscous damper"), f"c = {units.text(element.coefficient, 'damping')}", ("", "")
-    if isinstance(element, FrictionDamper):
-        states = (translated("did not slide"), translated("slid"))
-        return translated("friction damper"), f"F_0 = {units.text(element.force, 'force')}", states
-    stiffness = f"k = {units.text(element.stiffness, 'stiffness')}"
-    limit = "" if element.yield_force is None else f", F_y = {units.text(element.yield_force, 'force')}"
-    ratio = "" if element.post_yield_ratio is None else f"{element.post_yield_ratio:.4g}"
-    after = ratio and ", " + translated("post-yield ratio {ratio}", ratio=ratio)
-    longest = element.rupture_elongation
-    breaks = (
-        ""
-        if longest is None
-        else ", " + translated("breaks at {elongation}", elongation=units.text(longest, "displacement"))
-    )
-    if isinstance(element, Tendon):
-        state = (translated("elastic"), translated("beyond F_y" if element.post_yield_ratio is None else "yielded"))
-        start = f"F_0 = {units.text(element.initial_force, 'force')}, "
-        return translated("tendon"), start + stiffness + limit + after + breaks, state
-    only = ", " + translated("tension only") if element.tension_only else ""
-    states = (translated("elastic"), translated("yielded"))
-    return translated("yielding dissipator"), stiffness + limit + after + breaks + only, states
+    known = described_arguments(type(element))
+    given = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
+    texts = [_property_text(name, value, known[name].unit, units) for name, value in given.items()]
+    return translated(element.words), ", ".join(filter(None, texts)), element.yield_words
+
+
+def _property_text(name: str, value: Any, unit: str, units: UnitSystem) -> str:
+    """Return the text of a parameter of an element; empty for one that is not given."""
+    if value is None or value is False:
+        return ""
+    if name == "post_yield_ratio":
+        return translated("post-yield ratio {ratio}", ratio=f"{value:.4g}")
+    if name == "rupture_elongation":
+        return translated("breaks at {elongation}", elongation=units.text(value, "displacement"))
+    if name == "tension_only":
+        return translated("tension only")
+    if unit in _QUANTITIES and isinstance(value, float):
+        return f"{_SYMBOLS.get(name, name)} = {units.text(value, _QUANTITIES[unit])}"
+    return f"{name} = {shown(value)}"
 
 
 def largest_rotations(run: Response, history: History) -> dict[int, float]:

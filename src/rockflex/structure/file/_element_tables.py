@@ -7,16 +7,14 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.registry import registered_objects
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._devices import bar_fuse, strand_tendon, u_plate_fuse
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._elements import ELEMENTS as CLASSES
 from rockflex.structure._law_bars import BARS
 from rockflex.structure.file._toml_table import TomlTable, table_of
 
 _MADE: dict[str, Callable[..., BaseElement]] = {
-    "tendon": Tendon,
-    "yielding_dissipator": YieldingDissipator,
-    "viscous_damper": ViscousDamper,
-    "friction_damper": FrictionDamper,
+    **CLASSES,
     "strand_tendon": strand_tendon,
     "bar_fuse": bar_fuse,
     "u_plate_fuse": u_plate_fuse,

@@ -12,7 +12,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.registry import registered_objects, source_checksum
 from rockflex.foundation.schema import Eccentricity
 from rockflex.structure._attachment import PLACE
-from rockflex.structure._elements import BaseElement
+from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties

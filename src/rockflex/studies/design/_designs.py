@@ -13,7 +13,8 @@ from rockflex.foundation.checks import checked_instance, checked_positive, check
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, YieldingDissipator
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._elements import Tendon
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import checked_positive_numbers, type_description
 from rockflex.studies._run_matrix import check_different_values
@@ -81,7 +82,7 @@ class TendonLevel:
 
     def held(self, properties: RockingProperties) -> RockingProperties:
         """The structure with this tendon in place of any other; without one if both ratios are zero."""
-        others = tuple(each for each in properties.elements if each.attached or not isinstance(each, Tendon))
+        others = tuple(each for each in properties.elements if each.attached or not each.prestressed)
         if not (self.prestress_ratio or self.stiffness_ratio):
             return replace(properties, elements=others)
         weight = properties.m_tot * GRAVITY
@@ -327,10 +328,11 @@ class DesignSearch:
 
     def check_elements(self, properties: RockingProperties) -> None:
         """Raise an InputError if factors are given for elements that the structure lacks."""
-        kinds = (Tendon, YieldingDissipator | FrictionDamper)
-        names = ("tendon", "yielding dissipator or friction damper")
-        for factors, kind, name in zip(FACTORS, kinds, names, strict=True):
-            if getattr(self, factors) != (1.0,) and not any(isinstance(each, kind) for each in properties.elements):
+        tendons = any(each.prestressed for each in properties.elements)
+        dissipators = any(each.dissipator_force is not None for each in properties.elements)
+        names = {"tendon": tendons, "yielding dissipator or friction damper": dissipators}
+        for factors, (name, known) in zip(FACTORS, names.items(), strict=True):
+            if getattr(self, factors) != (1.0,) and not known:
                 raise InputError(
                     f"{factors} were given, but the structure has no {name} that they could multiply. A search varies "
                     "half_widths, tendon_factors and dissipator_factors; strengths of stories and leaning masses stay "
@@ -338,27 +340,9 @@ class DesignSearch:
                 )
 
     def _scaled(self, element: BaseElement, tendons: float, dissipators: float) -> BaseElement | None:
-        if isinstance(element, Tendon):
-            return scaled_tendon(element, tendons, self.tendon_scaling)
-        if isinstance(element, YieldingDissipator):
-            if dissipators == 0.0:
-                return None
-            stiffness = element.stiffness * (dissipators if self.dissipator_scaling == "size" else 1.0)
-            return replace(element, stiffness=stiffness, yield_force=element.yield_force * dissipators)
-        if isinstance(element, FrictionDamper):
-            return replace(element, force=element.force * dissipators) if dissipators else None
-        return element
-
-
-def scaled_tendon(tendon: Tendon, factor: float, scaling: Scaling) -> Tendon | None:
-    """The tendon with a factor on its size or on its initial force; None where nothing is left of it."""
-    force = tendon.initial_force * factor
-    if scaling == "force":
-        return replace(tendon, initial_force=force)
-    if factor == 0.0:
-        return None
-    limit = None if tendon.yield_force is None else tendon.yield_force * factor
-    return replace(tendon, initial_force=force, stiffness=tendon.stiffness * factor, yield_force=limit)
+        if element.prestressed:
+            return element.scaled(tendons, size=self.tendon_scaling == "size")
+        return element.scaled(dissipators, size=self.dissipator_scaling == "size")
 
 
 def element_moved_with_base_edges(
@@ -376,8 +360,7 @@ def element_moved_with_base_edges(
 
 def total_dissipator_force(properties: RockingProperties) -> float:
     """ΣF_y of all yielding dissipators and friction dampers in N."""
-    forces = [each.yield_force for each in properties.elements if isinstance(each, YieldingDissipator)]
-    return sum((each.force for each in properties.elements if isinstance(each, FrictionDamper)), sum(forces))
+    return sum(each.dissipator_force or 0.0 for each in properties.elements)
 
 
 def checked_design_factors(name: str, given: Any) -> tuple[float, ...]:

@@ -1,14 +1,12 @@
-"""Elements of a model: tendons, fuses, viscous and friction dampers, and stories that yield, each with its branches."""
+"""Elements as their branches: tendons, fuses, viscous and friction dampers, and stories that yield."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex.foundation.arrays import Array
-from rockflex.structure._element_law import Branch, ElementLaw, slow_path
 
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
@@ -53,6 +51,11 @@ class Element(Protocol):
     @property
     def stretches(self) -> float | None:
         """Stretch in m at δ = 0 of an element whose internal variable m follows δ while it yields; None for others."""
+        ...
+
+    @property
+    def friction(self) -> float:
+        """Force in N up to which it sticks, and with which it slides; zero if it does neither."""
         ...
 
     def yields(self, branch: int) -> bool:
@@ -119,6 +122,10 @@ class ElementDefaults:
     @property
     def stretches(self) -> float | None:
         return None
+
+    @property
+    def friction(self) -> float:
+        return 0.0
 
     def yields(self, branch: int) -> bool:
         del branch
@@ -251,6 +258,10 @@ class YieldingElement:
     def stretches(self) -> float | None:
         return self.stretched
 
+    @property
+    def friction(self) -> float:
+        return 0.0
+
     def yields(self, branch: int) -> bool:
         return branch not in (ELASTIC, SLACK)
 
@@ -370,6 +381,10 @@ class FrictionElement(ElementDefaults):
     position: float | None
 
     @property
+    def friction(self) -> float:
+        return self.force
+
+    @property
     def n_internal(self) -> int:
         return 1
 
@@ -415,86 +430,3 @@ class FrictionElement(ElementDefaults):
         """F_0 for every metre that it slides."""
         del force, plastic, stored, sweep
         return self.force * np.abs(np.diff(elongation))
-
-
-@dataclass(frozen=True)
-class LawElement:
-    """An element of any law: its branches in their order. It remembers its internal variable and its branch."""
-
-    law: ElementLaw
-
-    @cached_property
-    def parts(self) -> tuple[Branch, ...]:
-        """Its branches."""
-        return tuple(self.law.law.values())
-
-    @cached_property
-    def places(self) -> dict[str, int]:
-        """Their numbers, by name."""
-        return {name: place for place, name in enumerate(self.law.law)}
-
-    @property
-    def position(self) -> float | None:
-        return None if self.law.attached else self.law.position
-
-    @property
-    def n_internal(self) -> int:
-        return 2
-
-    @property
-    def stretches(self) -> float | None:
-        return 0.0
-
-    @property
-    def branches(self) -> tuple[int, ...]:
-        return tuple(range(len(self.parts)))
-
-    def tension(self, branch: int) -> ElementTension:
-        part = self.parts[branch]
-        return ElementTension(part.stiffness, 0.0, part.force, part.internal)
-
-    def limits(self, branch: int) -> tuple[BranchLimit, ...]:
-        ends = self.parts[branch].ends
-        return tuple(BranchLimit(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
-
-    def yields(self, branch: int) -> bool:
-        return self.parts[branch].yields != 0
-
-    def broken(self, branch: int) -> bool:
-        del branch
-        return False
-
-    def direction(self, branch: int) -> int:
-        return self.parts[branch].yields
-
-    def reversal_offset(self, branch: int) -> float | None:
-        return self.parts[branch].offset if self.parts[branch].yields else None
-
-    def stopped(self, branch: int) -> int:
-        return self.places[self.parts[branch].turns_to] if self.parts[branch].yields else branch
-
-    def moving(self, branch: int, direction: int) -> int:
-        del direction
-        return branch
-
-    def branch_code(self, branch: int) -> float | None:
-        return float(branch)
-
-    def state_after_slow_stretch(self, elongation: float) -> tuple[int, tuple[float, ...]]:
-        state = slow_path(self.law, [elongation])[-1]
-        place = self.places[state.branch]
-        return place, (state.internal, float(place))
-
-    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        del elongation
-        return memory[:, 1].astype(np.int64)
-
-    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
-        del force
-        return np.asarray(self.law.stored_energy(elongation, plastic), dtype=float)
-
-    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
-        """The work that is not stored where m changes; the force is linear between adjacent states."""
-        del sweep
-        lost = 0.5 * (force[1:] + force[:-1]) * np.diff(elongation) - np.diff(stored)
-        return np.where(np.diff(plastic) == 0.0, 0.0, lost)
