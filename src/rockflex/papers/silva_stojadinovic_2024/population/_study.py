@@ -20,6 +20,7 @@ from rockflex.response._response import Response
 from rockflex.structure._frames import Frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import WORK_LIMIT, Motions, checked_motions, checked_work_limit, free_vibration_time
+from rockflex.studies._case_keys import FreeVibration
 from rockflex.studies._modal_combination import SecondMode, combine_modal_peaks, second_mode_peaks
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._prepared_case import PreparedCase, solutions_of_runs
@@ -27,7 +28,7 @@ from rockflex.studies._result_tables import Columns, Row, columns_of_kind, resul
 from rockflex.studies._run_matrix import record_columns, record_facts
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies.progress import ProgressChoice
-from rockflex.studies.spec import FreeVibration, StudySpec
+from rockflex.studies.spec import StudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
