@@ -95,6 +95,7 @@ from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
 from .report import Project as Project
 from .report import ProjectResults as ProjectResults
+from .report import read_case as read_case
 from .report import read_project as read_project
 from .report import write_report as write_report
 from .response import BilinearFit as BilinearFit
@@ -171,6 +172,7 @@ from .structure import u_plate_fuse as u_plate_fuse
 from .structure import uplifted_modes as uplifted_modes
 from .structure import winkler_bed as winkler_bed
 from .structure.file import read_structure as read_structure
+from .studies import Case as Case
 from .studies import CombinedPeaks as CombinedPeaks
 from .studies import InitialState as InitialState
 from .studies import OverturningScales as OverturningScales

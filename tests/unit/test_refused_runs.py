@@ -15,7 +15,7 @@ from rockflex.models import _work, parse_model
 from rockflex.models._work import Task, WorkLimitError
 from rockflex.motion._columns import record_csv
 from rockflex.studies import PreparedCase
-from rockflex.studies.spec import GroundTable
+from rockflex.studies._ground_tables import GroundTable
 from rockflex.web import _state
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view

@@ -16,9 +16,9 @@ from rockflex.cli._app import app
 from rockflex.models import parse_model
 from rockflex.structure.file._toml_table import parse_toml_table
 from rockflex.studies._arguments import expand_scale_range, parse_scale_range
+from rockflex.studies._case_keys import RunOptionKeys
 from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
 from rockflex.studies._result_tables import OF_ELEMENTS, OF_GROUND
-from rockflex.studies.spec import RunOptionKeys
 
 STRUCTURE = str(Path(__file__).parents[2] / "examples" / "structure_1.toml")
 BASE = {

@@ -143,7 +143,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
             "[records]: on_error is for the files of a folder",
         ),
         (CLOUD.replace("suites", "suite"), "[records] suite is not known; there are suites, folder, on_error,"),
-        (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
+        (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites, a folder or files."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
         (CLOUD + STRUCTURE, "the names of the structures: 'one' occurs more than once. Give each once."),
         (CLOUD.replace("period = 0.5", ""), "[[structures]] no. 1, [structures.frame] period is missing: the first"),

@@ -25,7 +25,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
-from rockflex.studies.spec import GroundTable
+from rockflex.studies._ground_tables import GroundTable
 from rockflex.web import _app, make_app
 from rockflex.web._forms import PRESETS
 from rockflex.web._serve import serve

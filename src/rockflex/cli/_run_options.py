@@ -20,10 +20,10 @@ from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import parse_toml_table
 from rockflex.studies._arguments import InitialState, ground_under_structure
+from rockflex.studies._case_keys import RunOptionKeys, impact_law_name
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
 from rockflex.studies.running import checked_work_limit
-from rockflex.studies.spec import RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundSchema).items()} | {

@@ -4,13 +4,12 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
-from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
-from rockflex.foundation.schema import FrameFlags, FrameSchema, ReportKeys
+from rockflex.foundation.schema import FrameFlags, FrameSchema
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.units import UnitSystem
 from rockflex.structure._attachment import element_parameters
@@ -21,11 +20,11 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, Restrained, structure_warnings
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
-from rockflex.structure.file._structure_entry import KINDS, StructureEntry
+from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_file import build_structure_in_file, read_toml_file
 from rockflex.structure.file._structure_tables import Built
-from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
-from rockflex.studies.spec import RunOptionKeys
+from rockflex.structure.file._toml_table import parse_toml_table
+from rockflex.studies._case_keys import RunOptionKeys, StructureFile
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -86,20 +85,6 @@ def _element_kind(element: BaseElement) -> str:
 
 
 FLAGS = flags_of_tables(FrameFlags)
-
-
-class ReportHeadTable(ReportKeys, TomlTable):
-    """The head of a report, and whether further sheets follow."""
-
-    appendix: Annotated[
-        bool, Described("whether cross-sections and loops of elements follow", form="true or false: {}")
-    ] = False
-
-
-class StructureFile(RunOptionKeys, StructureEntry):
-    """A structure file: one structure, optionally a name and elements, and options of ``rockflex run``."""
-
-    report: Annotated[ReportHeadTable | None, Described("a table", form=PLAIN)] = None
 
 
 @dataclass(frozen=True)

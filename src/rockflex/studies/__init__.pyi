@@ -8,6 +8,7 @@ from ._moment_rotation import moment_rotation as moment_rotation
 from ._plan import CrossPlan as CrossPlan
 from ._prepared_case import PreparedCase as PreparedCase
 from ._pushover import pushover as pushover
+from ._record_tables import Records as Records
 from ._run_matrix import record_groups as record_groups
 from ._run_study import estimate_time as estimate_time
 from ._run_study import fill_study as fill_study
@@ -23,6 +24,6 @@ from ._spectra import rocking_spectrum as rocking_spectrum
 from ._study_kind import KINDS as KINDS
 from ._study_kind import StudyFindings as StudyFindings
 from ._study_kind import StudyKind as StudyKind
+from .case import Case as Case
 from .running import running as running
-from .spec import Records as Records
 from .spec import StructuresStudySpec as StructuresStudySpec

@@ -21,7 +21,7 @@ from rockflex.structure._ground import (
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import ground_under_structure
-from rockflex.studies._objects import function_document, object_document
+from rockflex.studies._objects import function_document, object_document, object_in_file
 
 _EACH = one_for_each("spring")
 _DAMPING_RATIO = Described("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
@@ -152,6 +152,21 @@ class GivenGround(GroundTable):
     def under(self, properties: RockingProperties) -> Ground:
         """Return the ground under a structure."""
         return cast("Ground", ground_under_structure(properties, self.given))
+
+    def in_file(self) -> Any:
+        """Return the table of its class.
+
+        Raises
+        ------
+        InputError
+            If it is a function.
+        """
+        if isinstance(self.given, Ground):
+            return object_in_file("ground", self.given)
+        raise InputError(
+            "ground is a function of Python, which no file can hold. Give a Ground, or a table: {'friction': 0.4}.",
+            field="ground",
+        )
 
     def document(self) -> Any:
         """Return what determines it."""

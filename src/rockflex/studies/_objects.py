@@ -1,4 +1,4 @@
-"""Objects of Python in a stored study: what its document records of them, and the checksums of their sources."""
+"""Objects of Python in a study or a case: what a document or a file holds of them, and checksums of their sources."""
 
 import math
 from collections.abc import Mapping
@@ -9,12 +9,38 @@ import numpy as np
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.registry import source_checksum
-from rockflex.models._impact import ImpactLaw
+from rockflex.models._bouc_wen import BoucWen
+from rockflex.models._impact import LAW_CLASSES, ImpactLaw
 from rockflex.motion._measures import MEASURES
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import is_structure_or_properties
+from rockflex.structure.file._object_tables import object_from_table, object_table
+from rockflex.studies._arguments import InitialState, is_structure_or_properties
 
 PACKAGE = __name__.partition(".")[0]
+OPTION_CLASSES: dict[str, type] = {each.__name__: each for each in (BoucWen, InitialState)} | LAW_CLASSES
+"""The classes of options that a file may name, besides those of structures and grounds."""
+
+
+def object_in_file(name: str, value: Any) -> Any:
+    """Return a value, or the table of an object with the name of its class; `name` is its name in messages.
+
+    Raises
+    ------
+    InputError
+        If no file can hold it.
+    """
+    return value if isinstance(value, str | bool | int | float) else object_table(name, value, OPTION_CLASSES)
+
+
+def object_of_file(table: Any, place: str) -> Any:
+    """Return the object of a table with the name of its class; `place` names the table in messages.
+
+    Raises
+    ------
+    InputError
+        If the class or an argument is unknown or missing, or a value is wrong.
+    """
+    return object_from_table(table, place, OPTION_CLASSES)
 
 
 def object_document(name: str, value: Any) -> Any:

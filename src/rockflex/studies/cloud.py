@@ -1,18 +1,17 @@
 """Cloud analysis: every structure under every record, with every model, at a few scales (Section 3.2)."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, Unpack
+from typing import TYPE_CHECKING, Literal, Unpack
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import Field
 
-from rockflex.motion._ground_motion import GroundMotion
 from rockflex.studies._arguments import (
     Models,
     Motions,
     Structures,
     checked_scale_factors,
-    expand_scale_range,
 )
+from rockflex.studies._case_keys import Factors
 from rockflex.studies._plan import CrossPlan
 from rockflex.studies._run_matrix import StudyMatrix
 from rockflex.studies._run_plan import StudyKeywords, run_of_arguments
@@ -20,19 +19,6 @@ from rockflex.studies.spec import LimitKeys, StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
-Factors = Annotated[
-    list[float],
-    BeforeValidator(expand_scale_range),
-    Field(
-        min_length=1,
-        description="a list of factors on the acceleration, or a range such as "
-        "{smallest = 0.5, largest = 3.0, step = 0.25}",
-    ),
-    AfterValidator(lambda scales: checked_scale_factors(scales, QUIET)),
-]
 
 
 class CloudStudy(LimitKeys, StructuresStudySpec):

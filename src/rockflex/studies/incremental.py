@@ -13,11 +13,12 @@ from rockflex.foundation.errors import InputError
 from rockflex.fragility._limit_states import OVERTURNING, check_limit_columns, limit_state_of
 from rockflex.motion._measures import scalable_measure
 from rockflex.studies._arguments import Models, Motions, Structures
+from rockflex.studies._case_keys import FreeVibration, validator_of_check
 from rockflex.studies._plan import CrossPlan
 from rockflex.studies._result_tables import Columns, Row, Table, joined_tables
 from rockflex.studies._run_matrix import StudyMatrix, check_base_can_lift
 from rockflex.studies._run_plan import StudyKeywords, run_of_arguments
-from rockflex.studies.spec import FreeVibration, StructuresStudySpec, validator_of_check
+from rockflex.studies.spec import StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -20,8 +20,8 @@ from rockflex.structure.file._toml_table import (
     members_of_annotation,
     schema_key_of_field,
 )
+from rockflex.studies._case_keys import BoucWenTable
 from rockflex.studies._ground_tables import GroundTable
-from rockflex.studies.spec import BoucWenTable
 
 
 def _preset_frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:

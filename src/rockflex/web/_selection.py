@@ -20,7 +20,7 @@ from rockflex.motion._spectra import TargetSpectrum
 from rockflex.motion._suite import Selection, Suite, load_suite
 from rockflex.motion._target_files import read_target
 from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum
-from rockflex.studies.spec import Records
+from rockflex.studies._record_tables import Records
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import unclear_commas_text
 from rockflex.web._refusal import Refusal, errors_as_refusals

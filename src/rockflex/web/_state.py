@@ -28,10 +28,10 @@ from rockflex.response._limit_checks import CheckLimits
 from rockflex.structure._ground import Ground
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable, toml_problem_place
+from rockflex.studies._case_keys import BoucWenTable, RunOptionKeys
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.studies._prepared_case import RunOptions, yielding_model_labels
-from rockflex.studies.spec import BoucWenTable, RunOptionKeys
 from rockflex.web._limits import (
     MAX_MODELS,
     RUN_WORK_LIMIT,

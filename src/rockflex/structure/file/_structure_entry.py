@@ -83,10 +83,15 @@ class StructureEntry(_OfKinds):
         list[AnyElementTable] | None, Described("a list of tables, each under a heading [[elements]]", form=PLAIN)
     ] = None  # not an empty list, which would be new in the documents of stored studies
 
+    @property
+    def elsewhere(self) -> str:
+        """The key that holds the structure in place of a table; empty, as here there is none."""
+        return ""
+
     @model_validator(mode="after")
     def _one_structure(self) -> Self:
         found = [f"[{kind}]" for kind in KINDS if getattr(self, kind) is not None]
-        if len(found) != 1:
+        if len(found) != 1 and not self.elsewhere:
             *others, last = (f"[{kind}]" for kind in KINDS)
             was = " and ".join(found) + " were" if found else "none was"
             raise InputError(f"one structure is expected, {', '.join(others)} or {last}, but {was} found.")
@@ -160,6 +165,11 @@ class StructureEntry(_OfKinds):
                 name = error.field if error.field in PLACE else "position"
                 raise InputError(str(error), place=heading, field=f"{row}.{name}") from error
         return replace(built, elements=elements) if known else Restrained(built, elements)
+
+    def moved(self, path: Callable[[str], str]) -> Self:
+        """Return the same structure with the paths of its files from another folder."""
+        files = {name: path(getattr(self.table, name)) for name in self.table.files(Path())}
+        return self.model_copy(update={self.kind: self.table.model_copy(update=files)}) if files else self
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".

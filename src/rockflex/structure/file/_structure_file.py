@@ -61,6 +61,8 @@ def read_structure(path: str | Path) -> Built:
     content = {key: value for key, value in read_toml_file(file, "structure").items() if key not in _RUN_KEYS}
     if "study" in content:
         raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
+    if "structures" in content:
+        raise InputError(f"{file} is the file of a case, but one of a structure is expected. Use read_case(path).")
     if CLASS in content:
         return structure_from_table(content, str(file))
     return build_structure_in_file(file, parse_toml_table(StructureEntry, content, str(path)))

@@ -19,6 +19,7 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import Models, Motions, RockingStructure, type_description
+from rockflex.studies._case_keys import FreeVibration, validator_of_check
 from rockflex.studies._plan import PER_CHUNK
 from rockflex.studies._result_tables import Columns, Row, Table
 from rockflex.studies._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
@@ -44,7 +45,7 @@ from rockflex.studies.design._exceedance_fit import (
     first_damping_column,
 )
 from rockflex.studies.design._requirements import DesignCost, Requirement, checked_requirements
-from rockflex.studies.spec import FreeVibration, StructuresStudySpec, validator_of_check
+from rockflex.studies.spec import StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -20,6 +20,7 @@ from rockflex.response._response import Response
 from rockflex.structure._frames import Frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import Motions, checked_motions, free_vibration_time
+from rockflex.studies._case_keys import FreeVibration
 from rockflex.studies._modal_combination import SecondMode, combine_modal_peaks, second_mode_peaks
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._prepared_case import PreparedCase, solutions_of_runs
@@ -28,7 +29,7 @@ from rockflex.studies._run_matrix import record_columns, record_facts
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies.progress import ProgressChoice
 from rockflex.studies.running import WorkLimit, checked_work_limit
-from rockflex.studies.spec import FreeVibration, StudySpec
+from rockflex.studies.spec import StudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
