@@ -17,6 +17,16 @@ from rockflex.studies._arguments import is_structure_or_properties
 PACKAGE = __name__.partition(".")[0]
 
 
+class Given:
+    """What a study is given in Python, `given`, in the place of a table."""
+
+    given: Any
+
+    def document(self) -> Any:
+        """Return what determines it."""
+        raise NotImplementedError
+
+
 def object_document(name: str, value: Any) -> Any:
     """Return what determines an object as plain JSON; `name` is its name in messages.
 

@@ -45,6 +45,7 @@ from rockflex.studies._arguments import (
 )
 from rockflex.studies._ground_tables import GivenGround, GroundTable
 from rockflex.studies._objects import (
+    Given,
     added_checksums,
     function_document,
     impact_law_document,
@@ -111,7 +112,7 @@ class Records(TomlTable):
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 
-class GivenRecords(Records):
+class GivenRecords(Records, Given):
     """Motions in the place of a table."""
 
     given: InstanceOf[Suite]
@@ -125,7 +126,7 @@ class GivenRecords(Records):
         return {"motions": self.given.names}
 
 
-class GivenStructure(StructureEntry):
+class GivenStructure(StructureEntry, Given):
     """A structure in the place of a table."""
 
     given: Any
@@ -372,7 +373,7 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         if not isinstance(self.impact, str | None):
             found |= object_checksum("impact", type(self.impact), "impact law")
         functions = {f"demand {name}": each for name, each in (self.demands or {}).items()}
-        functions["ground"] = self.ground.given if isinstance(self.ground, GivenGround) else self.ground
+        functions["ground"] = self.ground.given if isinstance(self.ground, Given) else self.ground
         for key, each in functions.items():
             found |= object_checksum(key, each, "function") if callable(each) else {}
         return found
@@ -389,10 +390,10 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
 
 def _object_in_field(name: str, value: Any) -> Any:
     """Return what the document of a study has for an object of Python in one of its fields; None for plain values."""
-    if isinstance(value, GivenRecords | GivenStructure | GivenGround):
+    if isinstance(value, Given):
         return value.document()
     if isinstance(value, list):
-        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, GivenStructure)]
+        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, Given)]
         return found or None
     if isinstance(value, ImpactLaw):
         return impact_law_document(value)
