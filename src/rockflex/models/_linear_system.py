@@ -41,9 +41,13 @@ def linear_system_base(
     model: RockingModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
 ) -> "LinearSystemBase":
     """Return the base of a linear model, on rigid ground or on springs; `shaken` where the ground moves vertically."""
-    if isinstance(model, SpringModel):
-        return LinearOnSprings(model, quantities, extremes, shaken)
-    return LinearOnRigidGround(model, quantities, extremes, shaken)
+    return _base_on_ground_of(model)(model, quantities, extremes, shaken)
+
+
+def _base_on_ground_of(model: RockingModel) -> "type[LinearSystemBase]":
+    if model.springs is not None:
+        return LinearOnSprings
+    return LinearSliding if model.slip_marks else LinearOnRigidGround
 
 
 def linear_system_of(base: "LinearSystemBase") -> System:
@@ -306,19 +310,14 @@ class LinearSystemBase:
 
 @dataclass(frozen=True, eq=False)
 class LinearOnRigidGround(LinearSystemBase):
-    """A base that rocks about its edges, and may slide (Silva & Stojadinović 2024, Eqs. 15 and 23 to 25)."""
+    """A base that rocks about its edges (Silva & Stojadinović 2024, Eqs. 15 and 23 to 25)."""
 
-    @property
-    def slides(self) -> bool:
-        """Whether the base may slide."""
-        return isinstance(self.model, SlidingModel)
-
-    def along(self, key: Key, base: Key) -> Key:
-        """The branches of base and elements, with those of the slip."""
-        return (*base, key[-1]) if self.slides else base
+    def along(self, key: Key, base: Key) -> Key:  # noqa: ARG002
+        """The key with other branches of base and elements."""
+        return base
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase: uplift, or the release of a held base; impact, overturning, elements; and the slip."""
+        """What ends a phase: uplift, or the release of a held base; impact, overturning, and elements."""
         model = self.model
         found = list[Event]()
         if model.is_free(key):
@@ -327,7 +326,7 @@ class LinearOnRigidGround(LinearSystemBase):
             found += self.departures(key)
         for place in model.attached_places:
             found += self.element_events(place, key)
-        return found + (self.slip(key) if self.slides else [])
+        return found
 
     def departures(self, key: Key) -> list[Event]:
         """The base begins to rotate when the forces of the phase that follows would turn it (Eq. 24).
@@ -431,10 +430,24 @@ class LinearOnRigidGround(LinearSystemBase):
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
         return law.e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
 
+
+@dataclass(frozen=True, eq=False)
+class LinearSliding(LinearOnRigidGround):
+    """A base that rocks about its edges, and slides."""
+
+    model: SlidingModel  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    def along(self, key: Key, base: Key) -> Key:
+        """The key with other branches of base and elements, and that of the slip."""
+        return (*base, key[-1])
+
+    def events(self, key: Key) -> list[Event]:
+        """What ends a phase on ground on which the base cannot slide, and the slip."""
+        return [*super().events(key), *self.slip(key)]
+
     def slip(self, key: Key) -> list[Event]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
         model = self.model
-        assert isinstance(model, SlidingModel)
         before, slip, place = key[:-1], key[-1], model.layout.slip + 1
         pressure, weight = model.pressure(key), model.properties.m_tot * model.gravity
         if slip == STICK:

@@ -30,13 +30,8 @@ def nonlinear_system(model: RockingModel, quantities: Quantities, extremes: Quan
     parts = {f"state {k}": 1 for k in range(layout.size)}
     names = ("rotation", *(f"quantity {k}" for k in range(len(quantities))))
     names += (*(f"extreme {k}" for k in range(len(most))), "loss of support")
-    kind = (
-        NonlinearSpringPhases
-        if isinstance(model, SpringModel)
-        else NonlinearSlidingPhases
-        if isinstance(model, SlidingModel)
-        else NonlinearRockingPhases
-    )
+    on_rigid = NonlinearSlidingPhases if model.slip_marks else NonlinearRockingPhases
+    kind = on_rigid if model.springs is None else NonlinearSpringPhases
     phases = kind(model, joined_quantities((quantities, most)))
     return System(
         StateLayout(**parts),
@@ -51,6 +46,7 @@ class NonlinearSlidingPhases(NonlinearRockingPhases):
     """The phases of a model that slides on rigid ground."""
 
     model: SlidingModel
+    heavier: SlidingModel
 
     def slips(self, key: Key, first: int) -> tuple[list[Check], tuple[Event, ...]]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
@@ -84,9 +80,8 @@ class NonlinearSlidingPhases(NonlinearRockingPhases):
             found.append(Event("stick", self.unit(layout.slip + 1, way), sticks, jump=stops))
         return checks, tuple(found)
 
-    def contact_rows(self, model: Any, key: Key) -> dict[int, Array]:
+    def contact_rows(self, model: SlidingModel, key: Key) -> dict[int, Array]:
         """Conditions of the slip in contact: rows over the state, a and 1, by their factors while the base rocks."""
-        assert isinstance(model, SlidingModel)
         own = model_key(self.model, key)
         pressure = model.pressure(own)
         rows = {-1: -pressure, 1: pressure}

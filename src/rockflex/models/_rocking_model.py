@@ -1,6 +1,6 @@
 """The models on rigid ground, simplified, complete or yielding: elements, phases, and equations of motion as rows."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self
@@ -428,6 +428,16 @@ class RockingModel(Value):
     def sides(self) -> tuple[int, ...]:
         """Possible sides of the base: contact, and both pivots if it can lift."""
         return (CLOSED, RIGHT, LEFT) if self.lifts else (CLOSED,)
+
+    @property
+    def slip_marks(self) -> tuple[int, ...]:
+        """Values of the slip where it is the last internal variable of a state, by itself; none elsewhere."""
+        return ()
+
+    @property
+    def branch_values(self) -> list[Collection[int]]:
+        """Values of each of `branches_at`, but that of a slip with marks, which is the last one."""
+        return [self.sides, *(each.branches for each in self.elements)]
 
     def bordered_system(self, key: Key) -> BorderedSystem:
         """Return the equations of motion of a linear phase (Eq. 15 or 23)."""

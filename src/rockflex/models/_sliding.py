@@ -47,6 +47,11 @@ class SlidingModel(RockingModel):
         """Coulomb's coefficient."""
         return {"friction": self.friction}
 
+    @property
+    def slip_marks(self) -> tuple[int, ...]:
+        """Values of the slip, which is the last internal variable of a state."""
+        return tuple(range(-LOST, LOST + 1))
+
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements."""
         return key[:-1]

@@ -1,6 +1,6 @@
 """The simplified models on springs that cannot pull: the base rotates, heaves and, with friction, slides."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -86,6 +86,13 @@ class SpringModel(RockingModel):
     def sides(self) -> tuple[int, ...]:
         """The only side, 0: the base has no pivot."""
         return (CLOSED,)
+
+    @property
+    def branch_values(self) -> list[Collection[int]]:
+        """Values of each of `branches_at`: of the side, every spring, the slip and every element."""
+        slips = (STICK,) if self.friction is None else (STICK, 1, -1)
+        springs = [(LOADED, LIFTED, RECEDING)] * self.springs.n
+        return [self.sides, *springs, slips, *(each.branches for each in self.elements)]
 
     @property
     def _key_size(self) -> int:

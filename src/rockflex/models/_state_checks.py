@@ -8,8 +8,6 @@ from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.errors import InputError
 from rockflex.models._elements import internal_count, internal_places
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._sliding import LOST, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, STICK, SpringModel
 from rockflex.models._state_layout import BITS, HEADER, SIDE, TIME
 
 LATEST = 1e12  # s: no run lasts as long
@@ -29,7 +27,7 @@ def check_states(model: RockingModel, states: Array) -> None:
         whole = (codes == np.floor(codes)) & (codes >= 0.0) & (codes < 2.0**BITS)
         _check("number of branches", codes, whole, "a whole number is expected")
     branches = model.branches_at(states[:, SIDE], model.layout.of(states, model.layout.rotation), states)
-    for column, allowed in zip(branches.T, _branches(model), strict=False):
+    for column, allowed in zip(branches.T, model.branch_values, strict=False):
         _check_one_of("branch", column, allowed)
 
 
@@ -41,24 +39,15 @@ def _marks(model: RockingModel) -> list[tuple[str, int, Collection[float]]]:
         values = [mark for mark in map(each.branch_code, each.branches) if mark is not None]
         if len(values) == len(each.branches):  # of a bar only the last branch has one
             found.append((f"branch of element {place}", memory + first + each.n_internal - 1, values))
-    if isinstance(model, SlidingModel):
-        found.append(("slip", memory + model.layout.n_internal - 1, range(-LOST, LOST + 1)))
+    if model.slip_marks:
+        found.append(("slip", memory + model.layout.n_internal - 1, model.slip_marks))
     return found
 
 
 def _codes(model: RockingModel) -> slice:
     """Return the columns of the numbers whose digits are branches."""
     memory, last = HEADER + model.layout.memory, HEADER + model.layout.memory + model.layout.n_internal
-    return slice(memory + internal_count(model.elements), last - isinstance(model, SlidingModel))
-
-
-def _branches(model: RockingModel) -> list[Collection[int]]:
-    """Return the values of each of `branches_at`, but that of a slip, which is the last one or the following."""
-    elements = [each.branches for each in model.elements]
-    if not isinstance(model, SpringModel):
-        return [model.sides, *elements]
-    slips = (STICK,) if model.friction is None else (STICK, 1, -1)
-    return [model.sides, *[(LOADED, LIFTED, RECEDING)] * model.springs.n, slips, *elements]
+    return slice(memory + internal_count(model.elements), last - bool(model.slip_marks))
 
 
 def _check_one_of(name: str, values: Array | Integers, allowed: Collection[float]) -> None:

@@ -110,7 +110,7 @@ def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground
 
 def ground_under_structure(properties: RockingProperties, ground: GroundChoice) -> Ground | None:
     """Return the ground under a structure."""
-    if ground is None or isinstance(ground, Ground):
+    if not callable(ground):
         return ground
     found = ground(properties)
     if not isinstance(found, Ground):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -44,6 +44,7 @@ from rockflex.studies._arguments import (
 )
 from rockflex.studies._ground_tables import GivenGround, GroundTable
 from rockflex.studies._objects import (
+    Given,
     function_document,
     impact_law_document,
     object_checksum,
@@ -347,10 +348,10 @@ def _path_from_folder(old: Path, new: Path) -> Moved:
 
 def _document_of_object(name: str, value: Any) -> Any:
     """Return what the document of a study has for an object of Python in one of its fields; None for plain values."""
-    if isinstance(value, GivenRecords | GivenStructure | GivenGround):
+    if isinstance(value, Given):
         return value.document()
     if isinstance(value, list):
-        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, GivenStructure)]
+        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, Given)]
         return found or None
     if isinstance(value, ImpactLaw):
         return impact_law_document(value)
@@ -361,7 +362,7 @@ def _document_of_object(name: str, value: Any) -> Any:
     return function_document(name, value) if callable(value) else None
 
 
-class GivenStructure(StructureEntry):
+class GivenStructure(StructureEntry, Given):
     """A structure in the place of a table."""
 
     given: Any

@@ -21,7 +21,7 @@ from rockflex.structure._ground import (
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import ground_under_structure
-from rockflex.studies._objects import function_document, object_document, object_in_file
+from rockflex.studies._objects import Given, function_document, object_document, object_in_file
 
 _EACH = one_for_each("spring")
 _DAMPING_RATIO = Described("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
@@ -144,7 +144,7 @@ class GroundTable(GroundSchema, TomlTable):
         return self.mat_mass * (2.0 * properties.half_width) ** 2 / 12.0
 
 
-class GivenGround(GroundTable):
+class GivenGround(GroundTable, Given):
     """A `Ground`, or a function of `RockingProperties` that returns one, in the place of a table."""
 
     given: Any

@@ -43,6 +43,16 @@ def object_of_file(table: Any, place: str) -> Any:
     return object_from_table(table, place, OPTION_CLASSES)
 
 
+class Given:
+    """What a study is given in Python, `given`, in the place of a table."""
+
+    given: Any
+
+    def document(self) -> Any:
+        """Return what determines it."""
+        raise NotImplementedError
+
+
 def object_document(name: str, value: Any) -> Any:
     """Return what determines an object as plain JSON; `name` is its name in messages.
 

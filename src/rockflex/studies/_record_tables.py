@@ -18,6 +18,7 @@ from rockflex.motion._readers import read_motion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._suite import Suite, load_suite
 from rockflex.structure.file._toml_table import TomlTable
+from rockflex.studies._objects import Given
 
 Moved = Callable[[str], str]
 
@@ -150,7 +151,7 @@ class Records(TomlTable):
         return self.model_copy(update={"folder": folder, "files": files})
 
 
-class GivenRecords(Records):
+class GivenRecords(Records, Given):
     """Motions in the place of a table."""
 
     given: InstanceOf[Suite]
