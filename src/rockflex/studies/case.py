@@ -12,9 +12,8 @@ from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
 from rockflex.foundation.shown import shown
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import parse_model
+from rockflex.motion._suite import Suite
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
@@ -23,10 +22,10 @@ from rockflex.structure.file._structure_file import build_structure_in_file, rea
 from rockflex.structure.file._structure_tables import Built
 from rockflex.structure.file._toml_table import parse_toml_table
 from rockflex.studies._arguments import (
-    GroundChoice,
     InitialState,
     Output,
     checked_structures,
+    checked_work_limit,
     ground_under_structure,
     is_structure_or_properties,
     rocking_properties_of,
@@ -156,20 +155,16 @@ def _structure_in_file(structure: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class CaseRuns:
-    """The runs of a structure of a case: its name, its properties, and its models and options."""
+    """The runs of a structure of a case: its name, itself, its models, and the options by name.
+
+    `options` has the names of `simulate_many`.
+    """
 
     name: str
+    structure: Built
     properties: RockingProperties
     models: tuple[str, ...]
-    impact: ImpactLaw | None
-    bouc_wen: BoucWen | None
-    ground: GroundChoice
-    initial: InitialState | None
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """The models and options by the names that `simulate_many` has for them."""
-        return {name: value for name, value in vars(self).items() if name not in ("name", "properties")}
+    options: dict[str, Any]
 
 
 class Case(RunsKeys):
@@ -201,6 +196,10 @@ class Case(RunsKeys):
     initial: Initial = None
     structures: list[CaseStructure] = Field(min_length=1, description="one or more tables [[structures]]")
 
+    if TYPE_CHECKING:  # type checkers take every field for an argument that must be given
+
+        def __init__(self, **content: Any) -> None: ...
+
     @field_validator("structures", mode="before")
     @classmethod
     def _given_structures(cls, given: Any) -> Any:
@@ -223,6 +222,16 @@ class Case(RunsKeys):
         """The names of the structures; those without are "S1", "S2", ... by their places."""
         return [each.name or f"S{place}" for place, each in enumerate(self.structures, 1)]
 
+    def motions(self) -> Suite:
+        """Load the records.
+
+        Raises
+        ------
+        InputError
+            If a record cannot be read, or two have the same name.
+        """
+        return self.records.load(self._folder)
+
     def runs(self) -> list[CaseRuns]:
         """Build the structures, and return each with its models and options.
 
@@ -244,15 +253,15 @@ class Case(RunsKeys):
             check_different_values("models", models)
             law, ground = own if own.impact is not None else self, own if own.ground is not None else self
             ground_under_structure(properties, ground.ground_rule())  # before any run
-            return CaseRuns(
-                name=name,
-                properties=properties,
-                models=models,
-                impact=law.law(),
-                bouc_wen=own.hysteresis() or self.hysteresis(),
-                ground=ground.ground_rule(),
-                initial=own.initial or self.initial,
-            )
+            options = {
+                "free_vibration": self.free_vibration,
+                "impact": law.law(),
+                "bouc_wen": own.hysteresis() or self.hysteresis(),
+                "ground": ground.ground_rule(),
+                "initial": own.initial or self.initial,
+                "work_limit": checked_work_limit(self.work_limit),
+            }
+            return CaseRuns(name, built, properties, models, options)
         except InputError as error:
             given = self.structures[place].name
             raise InputError(f"[[structures]] no. {place + 1}{given and f', {shown(given)}'}: {error}") from error
@@ -277,13 +286,12 @@ class Case(RunsKeys):
         InputError
             If a structure cannot be built or a record cannot be read; see also `simulate_many`.
         """
-        motions, runs = self.records.load(self._folder), self.runs()
-        limit = None if self.work_limit == "none" else self.work_limit
+        motions, runs = self.motions(), self.runs()
         total = len(motions) * len(self.scales) * sum(len(each.models) for each in runs)
         tables: list[pd.DataFrame] = []
         with reporting_progress(progress, total, "runs") as advance:
             # Structures that share their options share the threads.
-            for options, group in groupby(runs, key=lambda each: each.options):
+            for (models, options), group in groupby(runs, key=lambda each: (each.models, each.options)):
                 told = 0
 
                 def tell(done: int, _: int) -> None:
@@ -294,10 +302,9 @@ class Case(RunsKeys):
                 table = simulate_many(
                     {each.name: each.properties for each in group},
                     motions,
-                    output=output,
-                    scales=self.scales,
-                    free_vibration=self.free_vibration,
-                    work_limit=limit,
+                    models,
+                    output,
+                    self.scales,
                     workers=workers,
                     progress=None if progress is None else tell,
                     **options,
