@@ -40,7 +40,7 @@ from rockflex.studies._case_keys import (
     model_labels,
     validator_of_check,
 )
-from rockflex.studies._objects import object_in_file, object_of_file
+from rockflex.studies._objects import object_in_file, option_of_file
 from rockflex.studies._record_tables import GivenRecords, Moved
 from rockflex.studies._run_matrix import check_different_values
 from rockflex.studies._simulate import simulate_many
@@ -53,7 +53,7 @@ _PARTS = ("leaning_masses", "stories", "eccentricity", "elements")  # of a struc
 
 
 def _initial_state(given: Any) -> Any:
-    return object_of_file({CLASS: InitialState.__name__, **given}, "initial") if isinstance(given, Mapping) else given
+    return option_of_file("initial", {CLASS: InitialState.__name__, **given}) if isinstance(given, Mapping) else given
 
 
 def _structure_object(given: Any) -> Any:
@@ -71,7 +71,23 @@ Initial = Annotated[
 ]
 
 
-class CaseStructure(ObjectOptionKeys, StructureEntry):
+class OwnRunKeys(ObjectOptionKeys):
+    """The models and options of one structure, where they differ from those of a case."""
+
+    models: Annotated[
+        list[str] | None,
+        BeforeValidator(model_labels),
+        validator_of_check(lambda labels: [*map(parse_model, labels or [])]),
+    ] = Field(None, min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
+    initial: Initial = None
+
+    def options_in_file(self) -> dict[str, Any]:
+        """Return the models and options that were given as the keys of a file."""
+        given = {name: getattr(self, name) for name in OwnRunKeys.model_fields if name in self.model_fields_set}
+        return {name: key_in_file(name, value) for name, value in given.items() if value is not None}
+
+
+class CaseStructure(OwnRunKeys, StructureEntry):
     """A structure of a case: a table as in a structure file, such a file, or an object; with options of its own.
 
     Options that it has replace those of the case, and of its file.
@@ -81,12 +97,6 @@ class CaseStructure(ObjectOptionKeys, StructureEntry):
     object: Annotated[
         Any, BeforeValidator(_structure_object), Described('a table with the key "class", and arguments', form=PLAIN)
     ] = None
-    models: Annotated[
-        list[str] | None,
-        BeforeValidator(model_labels),
-        validator_of_check(lambda labels: [*map(parse_model, labels or [])]),
-    ] = Field(None, min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
-    initial: Initial = None
 
     @property
     def elsewhere(self) -> str:
@@ -134,12 +144,11 @@ class CaseStructure(ObjectOptionKeys, StructureEntry):
 
     def in_file(self) -> dict[str, Any]:
         """Return the keys of a file."""
-        given: Any = self
-        found: dict[str, Any] = {name: value for name, value in given if value is not None and value != ""}
-        found = {name: value for name, value in found.items() if name in self.model_fields_set}
-        structure = {} if self.object is None else _structure_in_file(found.pop("object"))
-        options = {name: key_in_file(name, value) for name, value in found.items()}
-        return options | structure
+        name = {"name": self.name} if self.name else {}
+        if self.object is not None:
+            return name | _structure_in_file(self.object) | self.options_in_file()
+        table = self.model_dump(exclude={"name", *OwnRunKeys.model_fields}, exclude_unset=True, exclude_none=True)
+        return name | table | self.options_in_file()
 
 
 def _structure_in_file(structure: Any) -> dict[str, Any]:
