@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import product
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import typer
 
@@ -35,7 +35,6 @@ from rockflex.foundation.schema import (
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import OnError
-from rockflex.report._read_case import read_case
 from rockflex.response._friction import friction_coefficient
 from rockflex.response._respond import BY_STORY, story_results
 from rockflex.response._response import PEAKS, Response
@@ -49,7 +48,7 @@ from rockflex.studies._arguments import (
 )
 from rockflex.studies._objects import object_in_file
 from rockflex.studies._prepared_case import PreparedCase, RunOptions, yielding_model_labels
-from rockflex.studies.case import Case, CaseRuns
+from rockflex.studies.case import Case, CaseRuns, case_in_file
 from rockflex.studies.parallel import map_runs_in_order
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
@@ -249,7 +248,8 @@ def prepare_batches(context: typer.Context, arguments: RunArguments, *, historie
     Histories are kept of up to `histories` motions, each scale counted.
     """
     file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
-    if file is None or not _is_case_file(file):
+    content = {} if file is None else read_toml_file(file, "structure")
+    if file is None or "structures" not in content or "study" in content:
         return [prepare_batch(context, arguments, histories=histories)]
     flags = flags_of_tables(*_TABLES_IN_CASE)
     given = [flags[name] for table in _TABLES_IN_CASE for name in flag_values(context, table)]
@@ -259,7 +259,7 @@ def prepare_batches(context: typer.Context, arguments: RunArguments, *, historie
             f"{file} is a case, which has structures, records, models and options, but {', '.join([*names, *given])} "
             "was given as well. Write it in the file, or leave it out."
         )
-    case = cast("Case", read_case(file))
+    case = case_in_file(file, content)
     found = [FoundMotion(motion, str(file)) for motion in case.motions()]
     with naming_flags_in_errors(FLAGS):
         return [
@@ -277,11 +277,6 @@ def output_folders(out: Path | None, prepared: Sequence[PreparedBatch]) -> list[
     if out is None or len(prepared) == 1:
         return [out] * len(prepared)
     return [out / stem for stem in output_file_stems(each.loaded.name for each in prepared)]
-
-
-def _is_case_file(file: Path) -> bool:
-    content = read_toml_file(file, "structure")
-    return "structures" in content and "study" not in content
 
 
 def _is_typed(context: typer.Context, name: str) -> bool:

@@ -341,6 +341,20 @@ class Case(RunsKeys):
         return super()._moved(path).model_copy(update={"structures": moved})
 
 
+def case_in_file(file: Path, content: Mapping[str, Any]) -> Case:
+    """Return the case that a file holds; paths in it start from its folder.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or a value is wrong; the message names file and key.
+    """
+    try:
+        return Case(**content).read_from(file.parent, file)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from error
+
+
 def _joined(tables: "list[pd.DataFrame]") -> "pd.DataFrame":
     """Return the rows of all tables; names stay categories."""
     import pandas as pd
