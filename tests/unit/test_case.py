@@ -1,8 +1,8 @@
 """A case: what is written is read again, with the same numbers, and a wrong file says what is wrong."""
 
+import json
 import math
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +10,11 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import frame_values, make_frame
+from rockflex.cli._app import app
 from rockflex.studies._arguments import ground_under_structure
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
@@ -135,8 +137,9 @@ def test_options_come_back(everything, own):
     again = rf.Case(**tomllib.loads(case.to_toml()))
     assert again.document() == case.document()
     (one,), (other,) = case.runs(), again.runs()
-    assert replace(other, ground=None) == replace(one, ground=None)
-    assert ground_under_structure(other.properties, other.ground) == ground_under_structure(one.properties, one.ground)
+    grounds = [ground_under_structure(each.properties, each.options.pop("ground")) for each in (one, other)]
+    assert grounds[0] == grounds[1]
+    assert one == other
     assert again.to_toml() == case.to_toml()
 
 
@@ -149,18 +152,17 @@ def test_a_structure_may_have_options_of_its_own(file):
     )
     case = rf.read_case(file(text))
     first, second, third, fourth = case.runs()
-    assert (first.impact, first.ground, first.initial) == (None, None, None)
-    assert (second.name, second.models, second.impact) == ("b", ("rigid", "rigid-C"), rf.Restitution(0.5))
-    assert second.ground(second.properties).friction == 0.3
-    assert (third.name, third.impact, third.initial) == ("S3", rf.Restitution(0.95), rf.InitialState(rotation=0.05))
-    assert fourth.impact == rf.VVELSimplified()
-    assert fourth.ground(fourth.properties).friction == 0.9
+    assert [first.options[name] for name in ("impact", "ground", "initial")] == [None, None, None]
+    assert (second.name, second.models, second.options["impact"]) == ("b", ("rigid", "rigid-C"), rf.Restitution(0.5))
+    assert second.options["ground"](second.properties).friction == 0.3
+    assert (third.name, third.options["impact"]) == ("S3", rf.Restitution(0.95))
+    assert third.options["initial"] == rf.InitialState(rotation=0.05)
+    assert fourth.options["impact"] == rf.VVELSimplified()
+    assert fourth.options["ground"](fourth.properties).friction == 0.9
     table = case.run()
     assert table["structure"].tolist() == ["a", "b", "b", "S3", "S4"]
     assert table["model"].tolist() == ["rigid", "rigid", "rigid-C", "rigid", "rigid"]
-    alone = rf.simulate_many(
-        first.properties, rf.load_suite("el-centro-1940"), "rigid", impact=third.impact, initial=third.initial
-    )
+    alone = rf.simulate_many(first.properties, rf.load_suite("el-centro-1940"), "rigid", **third.options)
     assert table["max_rotation"][3] == alone["max_rotation"][0]
     assert rf.read_case(case.write(file("", "again.toml"))).document() == case.document()
 
@@ -302,3 +304,61 @@ def test_matrices_in_files_follow_the_case(tmp_path):
 def test_a_case_in_place_of_a_structure_is_told(file):
     with pytest.raises(rf.InputError, match=r"is the file of a case.*read_case"):
         rf.read_structure(file(CASE))
+
+
+SEVERAL = f'{CASE}[[structures]]\nname = "b"\nmodels = ["rigid", "rigid-C"]\n{BLOCK}initial = {{ rotation = 0.05 }}\n'
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(app, [*map(str, arguments)], env={"COLUMNS": "200"})
+
+
+def test_the_command_line_runs_a_case(file):
+    path = file(SEVERAL.replace("[records]", "scales = [1.0, 2.0]\n[records]"))
+    result = invoke("run", path, "--json")
+    assert result.exit_code == 0, result.stderr
+    rows = [row for each in json.loads(result.stdout)["structures"] for row in each["runs"]]
+    expected = rf.read_case(path).run()
+    found = {(row["model"], row["scale"], row["max_rotation"], row["status"]) for row in rows}
+    assert found == set(expected[["model", "scale", "max_rotation", "status"]].itertuples(index=False, name=None))
+    assert len(rows) == len(expected) == 6
+
+
+def test_the_command_line_prints_and_stores_each_structure(file, tmp_path):
+    result = invoke("run", file(SEVERAL), "--out", tmp_path / "results", "--figures", 0)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.count("a: rigid") == result.stdout.count("b: rigid") == 1
+    assert len(pd.read_csv(tmp_path / "results" / "b" / "results.csv")) == 2
+    alone = invoke("run", file(CASE), "--out", tmp_path / "alone", "--figures", 0)
+    assert alone.exit_code == 0, alone.stderr
+    assert (tmp_path / "alone" / "results.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("flags", "named"),
+    [
+        (["el-centro-1940"], "el-centro-1940"),
+        (["--model", "rigid"], "--model"),
+        (["--scale", "1"], "--scale"),
+        (["--ground-friction", "0.3"], "--ground-friction"),
+        (["--initial-rotation", "0.1"], "--initial-rotation"),
+    ],
+)
+def test_what_a_case_has_is_not_given_twice(file, flags, named):
+    result = invoke("run", file(CASE), *flags)
+    assert result.exit_code == 2
+    assert f"is a case, which has structures, records, models and options, but {named} was given" in result.stderr
+
+
+def test_another_command_names_the_one_for_a_case(file):
+    result = invoke("modes", file(CASE))
+    assert result.exit_code == 2
+    assert "is a case" in result.stderr
+    assert "rockflex run" in result.stderr
+
+
+def test_a_report_of_a_case_is_of_one_structure(file, tmp_path):
+    assert invoke("run", file(CASE), "--report", tmp_path / "run.html").exit_code == 0
+    result = invoke("run", file(SEVERAL), "--report", tmp_path / "several.html")
+    assert result.exit_code == 2
+    assert "of one structure, but the case has 2" in result.stderr

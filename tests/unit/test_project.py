@@ -134,6 +134,17 @@ def test_every_kind_of_structure_comes_back_equal(structure, tmp_path):
     assert rf.read_structure(tmp_path / "structures" / "001_A.toml") == structure
 
 
+@pytest.mark.slow
+def test_the_unpacked_file_is_a_case_with_the_same_numbers(done, file, tmp_path):
+    with zipfile.ZipFile(file) as archive:
+        archive.extractall(tmp_path)
+    content = tomllib.loads((tmp_path / "project.toml").read_text("utf-8"))
+    own = {"format", "head", "rule", "periods", "limits", "results"}
+    case = rf.Case(**{name: value for name, value in content.items() if name not in own}).read_from(tmp_path)
+    table = case.run()
+    assert table["max_rotation"].tolist() == done.results.runs["max_rotation"].tolist()
+
+
 @dataclass(frozen=True)
 class Stranger:
     """A structure that no package registers."""
@@ -162,11 +173,11 @@ def test_what_no_file_can_hold_is_refused_before_writing(structure, tmp_path):
 def test_the_file_is_readable_without_this_software(done, file):
     with zipfile.ZipFile(file) as archive:
         head = tomllib.loads(archive.read("project.toml").decode())
-        rows = pd.read_csv(archive.open(head["records"][1]["file"]), comment="#")
+        rows = pd.read_csv(archive.open(head["records"]["files"][1]["file"]), comment="#")
         runs = pd.read_parquet(io.BytesIO(archive.read("results/runs.parquet")))
         frame = tomllib.loads(archive.read(head["structures"][0]["file"]).decode())
     assert head["head"]["author"] == "A. Müller"
-    assert head["records"][1]["info"]["scale"] == 1.3
+    assert head["records"]["files"][1]["info"]["scale"] == 1.3
     np.testing.assert_array_equal(rows["acceleration (m/s2)"], done.motions[1].acceleration)
     np.testing.assert_array_equal(rows["vertical (m/s2)"], done.motions[1].vertical)
     assert runs["max_rotation"].tolist() == done.results.runs["max_rotation"].tolist()
@@ -237,7 +248,7 @@ def test_a_damaged_member_is_refused(file):
 @pytest.mark.parametrize(
     ("words", "old", "new"),
     [
-        ("format.*rockflex-project-1.*rockflex-project-2", "rockflex-project-1", "rockflex-project-2"),
+        ("format.*rockflex-project-2.*rockflex-project-3", "rockflex-project-2", "rockflex-project-3"),
         ("not TOML", "[head]", "[head"),
         ("colour is not known", "[head]", "colour = 1\n[head]"),
         ("rule must be", 'rule = "ec8"', 'rule = "ec9"'),
@@ -253,8 +264,20 @@ def test_a_damaged_member_is_refused(file):
         ("periods must be", "2.0,", "2.0, 3.0,"),
         ("class must be", 'class = "Ground"', 'class = "Path"'),
         ("class must be", 'class = "Restitution"', 'class = "__import__"'),
-        ("ground must be of type", 'class = "Ground"\nbase_inertia = 20000.0', 'class = "Restitution"\ne = 0.5'),
+        (
+            "ground: class must be Ground, Springs",
+            'class = "Ground"\nbase_inertia = 20000.0',
+            'class = "Restitution"\ne = 0.5',
+        ),
         ("run it again", "friction = 0.5", "friction = 0.6"),
+        ("ground, springs: class must be Ground, Springs", 'class = "Springs"', 'class = "Frame"'),
+        ("models of each structure must be one", '"2DOF-S",', '"2DOF-S", "rigid",'),
+        ("records must be tables", "dt = 0.01", "dt = 0.01\nscale = 2.0"),
+        (
+            "records must be tables",
+            '[[records.files]]\nfile = "records/001',
+            '[records]\nsuites = ["x"]\n[[records.files]]\nfile = "records/001',
+        ),
     ],
 )
 def test_wrong_values_are_named(file, words, old, new):
@@ -262,7 +285,7 @@ def test_wrong_values_are_named(file, words, old, new):
     assert old in text
     if "Restitution" in new:
         start = text.index("[structures.ground.springs]")
-        text = text[:start] + text[text.index("[[records]]") :]
+        text = text[:start] + text[text.index("[[records.files]]") :]
     rewritten(file, {"project.toml": text.replace(old, new)})
     with pytest.raises(rf.InputError, match=f"(?s)a.rockflex.*{words}"):
         rf.read_project(file)

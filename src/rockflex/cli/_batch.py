@@ -7,13 +7,14 @@ from functools import cached_property
 from itertools import product
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import typer
 
 from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
-from rockflex.cli._options import flag_values, naming_flags_in_errors
+from rockflex.cli._options import flag_values, flags_of_tables, naming_flags_in_errors
+from rockflex.cli._output import output_file_stems
 from rockflex.cli._run_options import (
     choose_run_models,
     describe_run_options,
@@ -23,7 +24,14 @@ from rockflex.cli._run_options import (
 )
 from rockflex.cli._structures import LoadedStructure, load_structure, split_structure_file_argument
 from rockflex.foundation.errors import InputError, SolverError
-from rockflex.foundation.schema import BoucWenSchema, FrameFlags, InitialStateSchema
+from rockflex.foundation.schema import (
+    BoucWenSchema,
+    FrameFlags,
+    GroundSchema,
+    ImpactSchema,
+    InitialStateSchema,
+    SpringBedSchema,
+)
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import OnError
@@ -31,8 +39,16 @@ from rockflex.response._friction import friction_coefficient
 from rockflex.response._respond import BY_STORY, story_results
 from rockflex.response._response import PEAKS, Response
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import checked_scale_factors, free_vibration_time, parse_scale_range
+from rockflex.structure.file._structure_file import read_toml_file
+from rockflex.studies._arguments import (
+    checked_scale_factors,
+    free_vibration_time,
+    ground_under_structure,
+    parse_scale_range,
+)
+from rockflex.studies._objects import object_in_file
 from rockflex.studies._prepared_case import PreparedCase, RunOptions, yielding_model_labels
+from rockflex.studies.case import Case, CaseRuns, case_in_file
 from rockflex.studies.parallel import map_runs_in_order
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
@@ -212,13 +228,60 @@ class RunArguments:
     vertical: str | None = None
 
 
-@dataclass(frozen=True)
-class PreparedBatch:
+class PreparedBatch(NamedTuple):
     """A structure, the motions that were found, and the runs of one with the other."""
 
     loaded: LoadedStructure
     found: list[FoundMotion]
     batch: RunBatch
+
+
+_IN_CASE = {name: f"--{name.replace('_', '-')}" for name in (
+    "motion", "model", "scale", "free_vibration", "work_limit", "units", "dt", "on_error", "vertical"
+)}  # fmt: skip
+_TABLES_IN_CASE = (FrameFlags, ImpactSchema, InitialStateSchema, BoucWenSchema, GroundSchema, SpringBedSchema)
+
+
+def prepare_batches(context: typer.Context, arguments: RunArguments, *, histories: int) -> list[PreparedBatch]:
+    """Return the runs of each structure of a case, or of the one that the arguments of a command give.
+
+    Histories are kept of up to `histories` motions, each scale counted.
+    """
+    file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
+    content = {} if file is None else read_toml_file(file, "structure")
+    if file is None or "structures" not in content or "study" in content:
+        return [prepare_batch(context, arguments, histories=histories)]
+    flags = flags_of_tables(*_TABLES_IN_CASE)
+    given = [flags[name] for table in _TABLES_IN_CASE for name in flag_values(context, table)]
+    given += [flag for name, flag in _IN_CASE.items() if _is_typed(context, name)]
+    if given or names:
+        raise InputError(
+            f"{file} is a case, which has structures, records, models and options, but {', '.join([*names, *given])} "
+            "was given as well. Write it in the file, or leave it out."
+        )
+    case = case_in_file(file, content)
+    found = [FoundMotion(motion, str(file)) for motion in case.motions()]
+    with naming_flags_in_errors(FLAGS):
+        return [
+            PreparedBatch(
+                LoadedStructure(runs.name, type(runs.structure).__name__, row.in_file(), runs.structure, file=file),
+                found,
+                _batch_of_case(case, runs, found, arguments, histories),
+            )
+            for row, runs in zip(case.structures, case.runs(), strict=True)
+        ]
+
+
+def output_folders(out: Path | None, prepared: Sequence[PreparedBatch]) -> list[Path | None]:
+    """Return the folder of the results of each structure: that of --out, or one in it for each of several."""
+    if out is None or len(prepared) == 1:
+        return [out] * len(prepared)
+    return [out / stem for stem in output_file_stems(each.loaded.name for each in prepared)]
+
+
+def _is_typed(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories: int) -> PreparedBatch:
@@ -231,30 +294,49 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
     options, ground_values = make_run_options(context, loaded)
     by_flag = bool(flag_values(context, BoucWenSchema))
     models = choose_run_models(arguments.model, loaded.properties, options, by_flag=by_flag)
-    if options.bouc_wen is not None and not yielding_model_labels(models):
+    yields = bool(yielding_model_labels(models))
+    if options.bouc_wen is not None and not yields:
         console.print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += arguments.motion or []
     with naming_flags_in_errors(FLAGS):
         free = number_or_word(arguments.free_vibration)
         free_vibration_time(free)
-        mu = None if arguments.friction is None else friction_coefficient(arguments.friction)
         if names or arguments.vertical or not flag_values(context, InitialStateSchema):
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
             found, free = quiet_ground_motion(free)
         given_scales = [factor for text in arguments.scale for factor in parse_scale_range(text)]
         strongest = max((each.motion for each in found), key=lambda it: it.pga)
-        scales = list(dict.fromkeys(checked_scale_factors(given_scales, strongest)))
-        limit = parse_work_limit(arguments.work_limit)
-        batch = RunBatch(
-            properties=loaded.properties,
-            motions=[each.motion for each in found],
-            scales=scales,
+        case = Case(
+            structures={loaded.name: loaded.built},
+            records=[each.motion for each in found],
             models=models,
-            options=replace(options, free_vibration=free_vibration_time(free), work_limit=limit),
-            ground_values=ground_values,
-            history=len(found) * len(scales) <= histories,
-            workers=arguments.workers,
-            friction=mu,
+            scales=list(dict.fromkeys(checked_scale_factors(given_scales, strongest))),
+            impact=options.impact,
+            bouc_wen=options.bouc_wen if yields else None,
+            initial=options.initial,
+            ground=options.ground,
+            free_vibration=free,
+            work_limit=parse_work_limit(arguments.work_limit),
         )
-    return PreparedBatch(loaded, found, batch)
+        batch = _batch_of_case(case, case.runs()[0], found, arguments, histories)
+    return PreparedBatch(loaded, found, replace(batch, ground_values=ground_values))
+
+
+def _batch_of_case(
+    case: Case, runs: CaseRuns, found: Sequence[FoundMotion], arguments: RunArguments, histories: int
+) -> RunBatch:
+    """Return the runs of a structure of a case."""
+    options = RunOptions.of(**runs.options).for_models(map(parse_model, runs.models))
+    ground = ground_under_structure(runs.properties, options.ground)
+    return RunBatch(
+        properties=runs.properties,
+        motions=[each.motion for each in found],
+        scales=case.scales,
+        models=list(runs.models),
+        options=replace(options, ground=ground),
+        ground_values={} if ground is None else object_in_file("ground", ground),
+        history=len(found) * len(case.scales) <= histories,
+        workers=arguments.workers,
+        friction=None if arguments.friction is None else friction_coefficient(arguments.friction),
+    )

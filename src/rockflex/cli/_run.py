@@ -17,6 +17,8 @@ rockflex run structure.toml el-centro-1940
 
 rockflex run structure.toml fema-p695-far-field --model MDOF-S,fixed --out results
 
+rockflex run case.toml --out results
+
 rockflex run structure.toml el-centro-1940 --friction 0.5 --report run.html
 
 rockflex run structure.toml record.csv --units g --free-vibration settle --times
@@ -76,11 +78,13 @@ def run(
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
+    A case, a file with structures, records, models and options, is run as it stands.
+
     Peaks are those of the continuous motion, also between samples. All inputs are in kg, m, s, N and rad.
     """
     from time import perf_counter
 
-    from rockflex.cli._batch import FLAGS, RunArguments, prepare_batch, run_batch
+    from rockflex.cli._batch import FLAGS, RunArguments, output_folders, prepare_batches, run_batch
     from rockflex.cli._options import flag_values, naming_flags_in_errors
     from rockflex.cli._run_results import (
         UNITS,
@@ -106,35 +110,39 @@ def run(
         on_error=on_error, vertical=vertical
     )  # fmt: skip
     drawn = 0 if out is None else figures
-    prepared = prepare_batch(context, asked, histories=drawn if page is None else max(drawn, 1))
-    loaded, found, batch = prepared.loaded, prepared.found, prepared.batch
+    prepared = prepare_batches(context, asked, histories=drawn if page is None else max(drawn, 1))
     if page is not None:
-        check_one_run_for_report(batch)
-    start = perf_counter()
-    with naming_flags_in_errors(FLAGS):
-        runs = run_batch(batch)
-    elapsed = perf_counter() - start
-    document: dict[str, Any] = {
-        "versions": output.versions(),
-        "structure": loaded.describe(),
-        "properties": describe_rocking_properties(batch.properties),
-        "motions": [item.describe() for item in found],
-        "options": batch.describe(),
-        "units": UNITS,
-        "elapsed": elapsed,
-        "warnings": list(loaded.warnings),
-        "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
-    }
-    if out is not None:
-        write_run_results(out, document, batch, runs, figures=figures, form=form, force=force)
+        check_one_run_for_report([each.batch for each in prepared])
+    documents, failed = list[dict[str, Any]](), 0
+    for (loaded, found, batch), folder in zip(prepared, output_folders(out, prepared), strict=True):
+        start = perf_counter()
+        with naming_flags_in_errors(FLAGS):
+            runs = run_batch(batch)
+        elapsed = perf_counter() - start
+        document: dict[str, Any] = {
+            "versions": output.versions(),
+            "structure": loaded.describe(),
+            "properties": describe_rocking_properties(batch.properties),
+            "motions": [item.describe() for item in found],
+            "options": batch.describe(),
+            "units": UNITS,
+            "elapsed": elapsed,
+            "warnings": list(loaded.warnings),
+            "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
+        }
+        documents.append(document)
+        if folder is not None:
+            write_run_results(folder, document, batch, runs, figures=figures, form=form, force=force)
+        if not json:
+            if len(documents) > 1:
+                console.print_line()
+            print_run_peaks(loaded.title, batch, runs, elapsed, times=times, units=UnitSystem(output_units or "kN"))
+        console.print_warnings(document["warnings"])
+        print_run_warnings(runs)
+        failed += print_failed_runs(runs)
+        if page is not None:
+            write_report_of_run(page, loaded, batch, runs, head | written)
     if json:
-        typer.echo(output.to_json(document))
-    else:
-        print_run_peaks(loaded.title, batch, runs, elapsed, times=times, units=UnitSystem(output_units or "kN"))
-    console.print_warnings(document["warnings"])
-    print_run_warnings(runs)
-    failed = print_failed_runs(runs)
-    if page is not None:
-        write_report_of_run(page, loaded, batch, runs, head | written)
+        typer.echo(output.to_json(documents[0] if len(documents) == 1 else {"structures": documents}))
     if failed and strict:
         raise typer.Exit(1)

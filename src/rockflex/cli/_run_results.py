@@ -337,8 +337,14 @@ def checked_path_of_report(path: Path, *, force: bool, flag: str = "--report") -
     return page
 
 
-def check_one_run_for_report(batch: RunBatch) -> None:
+def check_one_run_for_report(batches: Sequence[RunBatch]) -> None:
     """Refuse more than one page holds, before anything is simulated."""
+    if len(batches) > 1:
+        raise InputError(
+            f"--report is of one structure, but the case has {len(batches)}. rockflex compare reports several, and "
+            "rockflex project each."
+        )
+    batch = batches[0]
     motions, scales, models = len(batch.motions), len(batch.scales), len(batch.models)
     if motions * scales > 1:
         first = batch.motions[0].name

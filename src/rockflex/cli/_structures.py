@@ -161,6 +161,8 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     content = read_toml_file(file, "structure")
     if "study" in content:
         raise _study_in_place_of_structure(file, content["study"])
+    if "structures" in content:
+        raise InputError(f"{file} is a case, but the file of one structure is expected. Use rockflex run {file}.")
     if CLASS in content:
         return LoadedStructure(file.stem, str(content[CLASS]), content, structure_from_table(content, str(file)))
     document = parse_toml_table(StructureFile, content, str(file))

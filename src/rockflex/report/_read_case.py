@@ -12,7 +12,7 @@ from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_file import read_toml_file
 from rockflex.studies._run_study import load_study
 from rockflex.studies._study_kind import study_kind_named
-from rockflex.studies.case import Case
+from rockflex.studies.case import Case, case_in_file
 from rockflex.studies.folders._folder import StudyFolder
 from rockflex.studies.spec import StudySpec
 
@@ -70,10 +70,7 @@ def read_case(path: str | Path) -> Case | StudySpec | Project:
             f"{file} is the file of a structure, and a case also needs records. Write a file with [[structures]] and "
             f'file = "{file.name}", and [records] with suites, a folder or files; or read it with read_structure(path).'
         )
-    try:
-        return Case(**content).read_from(file.parent, file)
-    except InputError as error:
-        raise InputError(f"{file}: {error}") from error
+    return case_in_file(file, content)
 
 
 def _study_in_folder(folder: Path) -> StudySpec:

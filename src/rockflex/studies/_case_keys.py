@@ -50,7 +50,7 @@ from rockflex.studies._objects import (
     object_checksum,
     object_document,
     object_in_file,
-    object_of_file,
+    option_of_file,
 )
 from rockflex.studies._record_tables import GivenRecords, Moved, Records, numbered_file_name, record_row
 from rockflex.studies.running import WORK_LIMIT, checked_work_limit
@@ -154,18 +154,18 @@ class ObjectOptionKeys(RunOptionKeys):
     @field_validator("impact", mode="before")
     @classmethod
     def _law_of_class(cls, given: Any) -> Any:
-        return object_of_file(given, "impact") if _names_class(given) else given
+        return option_of_file("impact", given) if _names_class(given) else given
 
     @field_validator("bouc_wen", mode="before")
     @classmethod
     def _hysteresis(cls, given: Any) -> Any:
-        found = object_of_file(given, "bouc_wen") if _names_class(given) else given
+        found = option_of_file("bouc_wen", given) if _names_class(given) else given
         return asdict(found) if isinstance(found, BoucWen) else found
 
     @field_validator("ground", mode="wrap")
     @classmethod
     def _given_ground(cls, given: Any, table: ValidatorFunctionWrapHandler) -> Any:
-        found = object_of_file(given, "ground") if _names_class(given) else given
+        found = option_of_file("ground", given) if _names_class(given) else given
         if isinstance(found, Ground) or callable(found):
             return GivenGround.model_construct(given=found)
         return table(found)

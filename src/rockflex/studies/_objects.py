@@ -12,35 +12,41 @@ from rockflex.foundation.registry import source_checksum
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import LAW_CLASSES, ImpactLaw
 from rockflex.motion._measures import MEASURES
+from rockflex.structure._ground import Ground, Springs
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_tables import object_from_table, object_table
 from rockflex.studies._arguments import InitialState, is_structure_or_properties
 
 PACKAGE = __name__.partition(".")[0]
-OPTION_CLASSES: dict[str, type] = {each.__name__: each for each in (BoucWen, InitialState)} | LAW_CLASSES
-"""The classes of options that a file may name, besides those of structures and grounds."""
+OPTION_CLASSES: dict[str, dict[str, type]] = {
+    "impact": LAW_CLASSES,
+    "bouc_wen": {"BoucWen": BoucWen},
+    "ground": {"Ground": Ground, "Springs": Springs},
+    "initial": {"InitialState": InitialState},
+}
+"""The classes that a file may name in the place of an option, by its key."""
 
 
 def object_in_file(name: str, value: Any) -> Any:
-    """Return a value, or the table of an object with the name of its class; `name` is its name in messages.
+    """Return a value, or the table of an object with the name of its class; `name` is its key.
 
     Raises
     ------
     InputError
         If no file can hold it.
     """
-    return value if isinstance(value, str | bool | int | float) else object_table(name, value, OPTION_CLASSES)
+    return value if isinstance(value, str | bool | int | float) else object_table(name, value, OPTION_CLASSES.get(name))
 
 
-def object_of_file(table: Any, place: str) -> Any:
-    """Return the object of a table with the name of its class; `place` names the table in messages.
+def option_of_file(key: str, table: Any) -> Any:
+    """Return the object of a table with the name of its class, in the place of an option.
 
     Raises
     ------
     InputError
-        If the class or an argument is unknown or missing, or a value is wrong.
+        If the class is none of the option, an argument is unknown or missing, or a value is wrong.
     """
-    return object_from_table(table, place, OPTION_CLASSES)
+    return object_from_table(table, key, OPTION_CLASSES[key], only=True)
 
 
 class Given:

@@ -12,9 +12,8 @@ from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
 from rockflex.foundation.shown import shown
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import parse_model
+from rockflex.motion._suite import Suite
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
@@ -23,10 +22,10 @@ from rockflex.structure.file._structure_file import build_structure_in_file, rea
 from rockflex.structure.file._structure_tables import Built
 from rockflex.structure.file._toml_table import parse_toml_table
 from rockflex.studies._arguments import (
-    GroundChoice,
     InitialState,
     Output,
     checked_structures,
+    checked_work_limit,
     ground_under_structure,
     is_structure_or_properties,
     rocking_properties_of,
@@ -41,7 +40,7 @@ from rockflex.studies._case_keys import (
     model_labels,
     validator_of_check,
 )
-from rockflex.studies._objects import object_in_file, object_of_file
+from rockflex.studies._objects import object_in_file, option_of_file
 from rockflex.studies._record_tables import GivenRecords, Moved
 from rockflex.studies._run_matrix import check_different_values
 from rockflex.studies._simulate import simulate_many
@@ -54,7 +53,7 @@ _PARTS = ("leaning_masses", "stories", "eccentricity", "elements")  # of a struc
 
 
 def _initial_state(given: Any) -> Any:
-    return object_of_file({CLASS: InitialState.__name__, **given}, "initial") if isinstance(given, Mapping) else given
+    return option_of_file("initial", {CLASS: InitialState.__name__, **given}) if isinstance(given, Mapping) else given
 
 
 def _structure_object(given: Any) -> Any:
@@ -72,7 +71,23 @@ Initial = Annotated[
 ]
 
 
-class CaseStructure(ObjectOptionKeys, StructureEntry):
+class OwnRunKeys(ObjectOptionKeys):
+    """The models and options of one structure, where they differ from those of a case."""
+
+    models: Annotated[
+        list[str] | None,
+        BeforeValidator(model_labels),
+        validator_of_check(lambda labels: [*map(parse_model, labels or [])]),
+    ] = Field(None, min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
+    initial: Initial = None
+
+    def options_in_file(self) -> dict[str, Any]:
+        """Return the models and options that were given as the keys of a file."""
+        given = {name: getattr(self, name) for name in OwnRunKeys.model_fields if name in self.model_fields_set}
+        return {name: key_in_file(name, value) for name, value in given.items() if value is not None}
+
+
+class CaseStructure(OwnRunKeys, StructureEntry):
     """A structure of a case: a table as in a structure file, such a file, or an object; with options of its own.
 
     Options that it has replace those of the case, and of its file.
@@ -82,12 +97,6 @@ class CaseStructure(ObjectOptionKeys, StructureEntry):
     object: Annotated[
         Any, BeforeValidator(_structure_object), Described('a table with the key "class", and arguments', form=PLAIN)
     ] = None
-    models: Annotated[
-        list[str] | None,
-        BeforeValidator(model_labels),
-        validator_of_check(lambda labels: [*map(parse_model, labels or [])]),
-    ] = Field(None, min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]')
-    initial: Initial = None
 
     @property
     def elsewhere(self) -> str:
@@ -135,12 +144,11 @@ class CaseStructure(ObjectOptionKeys, StructureEntry):
 
     def in_file(self) -> dict[str, Any]:
         """Return the keys of a file."""
-        given: Any = self
-        found: dict[str, Any] = {name: value for name, value in given if value is not None and value != ""}
-        found = {name: value for name, value in found.items() if name in self.model_fields_set}
-        structure = {} if self.object is None else _structure_in_file(found.pop("object"))
-        options = {name: key_in_file(name, value) for name, value in found.items()}
-        return options | structure
+        name = {"name": self.name} if self.name else {}
+        if self.object is not None:
+            return name | _structure_in_file(self.object) | self.options_in_file()
+        table = self.model_dump(exclude={"name", *OwnRunKeys.model_fields}, exclude_unset=True, exclude_none=True)
+        return name | table | self.options_in_file()
 
 
 def _structure_in_file(structure: Any) -> dict[str, Any]:
@@ -156,20 +164,16 @@ def _structure_in_file(structure: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class CaseRuns:
-    """The runs of a structure of a case: its name, its properties, and its models and options."""
+    """The runs of a structure of a case: its name, itself, its models, and the options by name.
+
+    `options` has the names of `simulate_many`.
+    """
 
     name: str
+    structure: Built
     properties: RockingProperties
     models: tuple[str, ...]
-    impact: ImpactLaw | None
-    bouc_wen: BoucWen | None
-    ground: GroundChoice
-    initial: InitialState | None
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """The models and options by the names that `simulate_many` has for them."""
-        return {name: value for name, value in vars(self).items() if name not in ("name", "properties")}
+    options: dict[str, Any]
 
 
 class Case(RunsKeys):
@@ -201,6 +205,10 @@ class Case(RunsKeys):
     initial: Initial = None
     structures: list[CaseStructure] = Field(min_length=1, description="one or more tables [[structures]]")
 
+    if TYPE_CHECKING:  # type checkers take every field for an argument that must be given
+
+        def __init__(self, **content: Any) -> None: ...
+
     @field_validator("structures", mode="before")
     @classmethod
     def _given_structures(cls, given: Any) -> Any:
@@ -223,6 +231,16 @@ class Case(RunsKeys):
         """The names of the structures; those without are "S1", "S2", ... by their places."""
         return [each.name or f"S{place}" for place, each in enumerate(self.structures, 1)]
 
+    def motions(self) -> Suite:
+        """Load the records.
+
+        Raises
+        ------
+        InputError
+            If a record cannot be read, or two have the same name.
+        """
+        return self.records.load(self._folder)
+
     def runs(self) -> list[CaseRuns]:
         """Build the structures, and return each with its models and options.
 
@@ -244,15 +262,15 @@ class Case(RunsKeys):
             check_different_values("models", models)
             law, ground = own if own.impact is not None else self, own if own.ground is not None else self
             ground_under_structure(properties, ground.ground_rule())  # before any run
-            return CaseRuns(
-                name=name,
-                properties=properties,
-                models=models,
-                impact=law.law(),
-                bouc_wen=own.hysteresis() or self.hysteresis(),
-                ground=ground.ground_rule(),
-                initial=own.initial or self.initial,
-            )
+            options = {
+                "free_vibration": self.free_vibration,
+                "impact": law.law(),
+                "bouc_wen": own.hysteresis() or self.hysteresis(),
+                "ground": ground.ground_rule(),
+                "initial": own.initial or self.initial,
+                "work_limit": checked_work_limit(self.work_limit),
+            }
+            return CaseRuns(name, built, properties, models, options)
         except InputError as error:
             given = self.structures[place].name
             raise InputError(f"[[structures]] no. {place + 1}{given and f', {shown(given)}'}: {error}") from error
@@ -277,13 +295,12 @@ class Case(RunsKeys):
         InputError
             If a structure cannot be built or a record cannot be read; see also `simulate_many`.
         """
-        motions, runs = self.records.load(self._folder), self.runs()
-        limit = None if self.work_limit == "none" else self.work_limit
+        motions, runs = self.motions(), self.runs()
         total = len(motions) * len(self.scales) * sum(len(each.models) for each in runs)
         tables: list[pd.DataFrame] = []
         with reporting_progress(progress, total, "runs") as advance:
             # Structures that share their options share the threads.
-            for options, group in groupby(runs, key=lambda each: each.options):
+            for (models, options), group in groupby(runs, key=lambda each: (each.models, each.options)):
                 told = 0
 
                 def tell(done: int, _: int) -> None:
@@ -294,10 +311,9 @@ class Case(RunsKeys):
                 table = simulate_many(
                     {each.name: each.properties for each in group},
                     motions,
-                    output=output,
-                    scales=self.scales,
-                    free_vibration=self.free_vibration,
-                    work_limit=limit,
+                    models,
+                    output,
+                    self.scales,
                     workers=workers,
                     progress=None if progress is None else tell,
                     **options,
@@ -323,6 +339,20 @@ class Case(RunsKeys):
     def _moved(self, path: Moved) -> Self:
         moved = [each.moved(path) for each in self.structures]
         return super()._moved(path).model_copy(update={"structures": moved})
+
+
+def case_in_file(file: Path, content: Mapping[str, Any]) -> Case:
+    """Return the case that a file holds; paths in it start from its folder.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or a value is wrong; the message names file and key.
+    """
+    try:
+        return Case(**content).read_from(file.parent, file)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from error
 
 
 def _joined(tables: "list[pd.DataFrame]") -> "pd.DataFrame":

@@ -12,12 +12,12 @@ from rockflex.report.project._archive import unpacked_members
 from rockflex.report.project._project_file import (
     PAGE,
     ProjectDocument,
-    RecordRow,
     project_document,
     project_members,
     record_of_member,
     structure_keys,
 )
+from rockflex.studies._record_tables import RecordFile
 from rockflex.web._alternatives import project_of_state
 from rockflex.web._folders import RecordFolder, SentRecordFile, flat_file_names, read_record_folder
 from rockflex.web._limits import (
@@ -70,7 +70,7 @@ def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]
         else:
             found, own = _state_of_document(members, document), True
         if own:
-            found |= {"record": _record(members, document.records, uploads), "scale": 1.0}
+            found |= {"record": _record(members, document.records.files or [], uploads), "scale": 1.0}
         state = parse_page_state(found)
     except RecursionError as error:
         raise Refusal({FIELD: "it is nested too deep to be read."}) from error
@@ -83,7 +83,7 @@ def state_of_project(content: bytes, uploads: UploadedRecords) -> dict[str, Any]
 
 def _state_of_document(members: Mapping[str, bytes], document: ProjectDocument) -> dict[str, Any]:
     """Return the state in a project that the page did not save: all of its structures are kept, the first is shown."""
-    kept = [{"name": row.name, "models": [row.model], **structure_keys(members, row)} for row in document.structures]
+    kept = [{"name": row.name, "models": row.models, **structure_keys(members, row)} for row in document.structures]
     free = MAX_FREE_VIBRATION if document.free_vibration == "settle" else document.free_vibration
     head = {name: text for name, text in document.head.items() if name != "date"}
     first = {name: value for name, value in kept[0].items() if name != "name"}
@@ -91,13 +91,13 @@ def _state_of_document(members: Mapping[str, bytes], document: ProjectDocument) 
     return {**first, **own, "alternatives": kept, "free_vibration": free, "head": head}
 
 
-def _record(members: Mapping[str, bytes], rows: Sequence[RecordRow], uploads: UploadedRecords) -> dict[str, Any]:
+def _record(members: Mapping[str, bytes], rows: Sequence[RecordFile], uploads: UploadedRecords) -> dict[str, Any]:
     """Return the choice of the records of a project: one as an uploaded file, several as a folder."""
     if len(rows) == 1:
         motion = record_of_member(members, rows[0])
         check_record_length(motion, FIELD)
         return {"source": "upload", "upload": uploads.add(motion, members[rows[0].file], f"{motion.dt} {motion.name}")}
-    names = flat_file_names([f"{row.name.replace('/', '_')}.csv" for row in rows])
+    names = flat_file_names([f"{(row.name or '').replace('/', '_')}.csv" for row in rows])
     contents = [members[row.file] for row in rows]
     files = [SentRecordFile(name, each, len(each)) for name, each in zip(names, contents, strict=True)]
     folder = read_record_folder(files, None, None)

@@ -2,7 +2,6 @@
 
 import hashlib
 import io
-import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -10,17 +9,15 @@ from typing import Annotated, Any
 
 import numpy as np
 import tomli_w
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field
 
 from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import unicode_text
 from rockflex.foundation.shown import shortened, shown
-from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import LAW_CLASSES, LAWS
+from rockflex.models._impact import LAWS
 from rockflex.motion._columns import record_csv
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo
 from rockflex.response._limit_checks import CheckLimits
 from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import (
@@ -31,9 +28,12 @@ from rockflex.structure.file._object_tables import (
     structure_from_table,
 )
 from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
-from rockflex.studies._arguments import InitialState
+from rockflex.studies._arguments import rocking_properties_of
+from rockflex.studies._case_keys import FreeVibration
+from rockflex.studies._record_tables import RecordFile, Records, numbered_file_name, record_row
+from rockflex.studies.case import OwnRunKeys
 
-FORMAT = "rockflex-project-1"
+FORMAT = "rockflex-project-2"
 DOCUMENT = "project.toml"
 PAGE = "page.json"  # the state of the page in the browser, in projects that it saved; only the page reads it
 MAX_ROWS = 100_000  # of a table of results
@@ -46,35 +46,19 @@ TABLES: dict[str, dict[str, type]] = {
 """The tables of results, and columns that each has at least."""
 
 _OPTIONS = ("bouc_wen", "impact", "ground", "initial")  # objects of each structure
-_CLASSES: dict[str, type] = {
-    **{each.__name__: each for each in (BoucWen, CheckLimits, InitialState)},
-    **LAW_CLASSES,
-}
+_RECORD_KEYS = ("file", "name", "dt")  # that each record has, and no others but its info
+_LIMITS: dict[str, type] = {"CheckLimits": CheckLimits}
 _LAW_NAMES = {law.__name__: name for name, law in LAWS.items()}
 _TABLE = Described("a table", form=PLAIN)
 _NAME = Described("a name, in quotes", form=PLAIN)
 _FILE = Described("the name of a file in the project", form=PLAIN)
 
 
-class StructureRow(TomlTable):
-    """A structure: its name, its file, and its options."""
+class StructureRow(OwnRunKeys):
+    """A structure of a case: its name, its file, its only model and its options."""
 
     name: Annotated[str, _NAME]
     file: Annotated[str, _FILE]
-    model: Annotated[str, Described("the label of a model", form=PLAIN)]
-    bouc_wen: Annotated[dict[str, Any] | None, _TABLE] = None
-    impact: Annotated[dict[str, Any] | None, _TABLE] = None
-    ground: Annotated[dict[str, Any] | None, _TABLE] = None
-    initial: Annotated[dict[str, Any] | None, _TABLE] = None
-
-
-class RecordRow(TomlTable):
-    """A record: its name, its file, its step, and what is known about it."""
-
-    name: Annotated[str, _NAME]
-    file: Annotated[str, _FILE]
-    dt: Annotated[float, Described("the step of the samples", "s")]
-    info: Annotated[dict[str, Any] | None, _TABLE] = None
 
 
 class ResultsRow(TomlTable):
@@ -85,21 +69,17 @@ class ResultsRow(TomlTable):
 
 
 class ProjectDocument(TomlTable):
-    """The content of project.toml."""
+    """The content of project.toml: a case whose structures and records are files, with head, limits and results."""
 
     format: Annotated[str, Described(f'"{FORMAT}"', form=PLAIN)]
     head: Annotated[dict[str, str], _TABLE] = Field(default_factory=dict[str, str])
     rule: Annotated[str | None, Described("a rule of simulate_set, in quotes", form=PLAIN)] = None
     periods: Annotated[list[float] | None, Described("the smallest and the largest period in s", form=PLAIN)] = None
-    free_vibration: Annotated[float | str, Described('a number of seconds or "settle"', form=PLAIN)] = 0.0
+    free_vibration: FreeVibration = 0.0
     limits: Annotated[dict[str, Any], _TABLE] = Field(default_factory=dict[str, Any])
     structures: Annotated[list[StructureRow], Described("a list of tables [[structures]]", form=PLAIN)]
-    records: Annotated[list[RecordRow], Described("a list of tables [[records]]", form=PLAIN)]
+    records: Annotated[Records, Described("a list of tables [[records.files]]", form=PLAIN)]
     results: Annotated[ResultsRow | None, _TABLE] = None
-
-
-def _member_name(folder: str, place: int, name: str, suffix: str) -> str:
-    return f"{folder}/{place:03d}_{re.sub(r'[^A-Za-z0-9+-]+', '_', name)[:60]}{suffix}"
 
 
 def _input_members(project: Any) -> tuple[dict[str, Any], dict[str, bytes]]:
@@ -107,30 +87,24 @@ def _input_members(project: Any) -> tuple[dict[str, Any], dict[str, bytes]]:
     files = dict[str, bytes]()
     structures: list[dict[str, Any]] = []
     for place, (name, structure) in enumerate(project.structures.items(), 1):
-        file = _member_name("structures", place, name, ".toml")
+        file = f"structures/{numbered_file_name(place, name, '.toml')}"
         files[file] = _toml(object_table(f"structures[{name!r}]", structure))
-        row: dict[str, Any] = {"name": name, "file": file, "model": project.model[name]}
-        given = {option: getattr(project, option) for option in _OPTIONS}
-        row |= {
-            option: object_table(f"{option}[{name!r}]", each[name], _CLASSES)
-            for option, each in given.items()
-            if name in each
-        }
-        structures.append(row)
+        options = {option: getattr(project, option) for option in _OPTIONS}
+        given = {option: each[name] for option, each in options.items() if name in each}
+        row = StructureRow(name=name, file=file, models=[project.model[name]], **given)
+        structures.append({"name": name, "file": file, **row.options_in_file()})
     records: list[dict[str, Any]] = []
     for place, motion in enumerate(project.motions, 1):
-        file = _member_name("records", place, motion.name, ".csv")
+        file = f"records/{numbered_file_name(place, motion.name, '.csv')}"
         files[file] = record_csv(motion).encode()
-        known = None if motion.metadata is None else _known(vars(motion.metadata) | {"findings": None})
-        info = {} if known is None else {"info": known}
-        records.append({"name": motion.name, "file": file, "dt": motion.dt, **info})
+        records.append(record_row(file, motion))
     document = {
         "format": FORMAT,
         **_known({"rule": project.rule, "periods": project.periods and list(project.periods)}),
         "free_vibration": project.free_vibration,
         "limits": _known(vars(project.limits)),
         "structures": structures,
-        "records": records,
+        "records": {"files": records},
     }
     return document, files
 
@@ -188,7 +162,15 @@ def project_document(members: Mapping[str, bytes]) -> ProjectDocument:
         )
     document = parse_toml_table(ProjectDocument, content, DOCUMENT)
     tables = [] if document.results is None else [_result_file(name) for name in TABLES]
-    listed = [DOCUMENT, *(each.file for each in (*document.structures, *document.records)), *tables]
+    records = document.records.files or []
+    known = [{*_RECORD_KEYS} <= each.model_fields_set <= {*_RECORD_KEYS, "info"} for each in records]
+    if not all(known) or document.records.model_fields_set != {"files"}:
+        raise InputError(
+            f"{DOCUMENT}: records must be tables [[records.files]] with {', '.join(_RECORD_KEYS)} and info."
+        )
+    if any(len(each.models or []) != 1 for each in document.structures):
+        raise InputError(f"{DOCUMENT}: models of each structure must be one.")
+    listed = [DOCUMENT, *(each.file for each in (*document.structures, *records)), *tables]
     problems = [
         *(f"{shown(name)} is listed, but not in the archive" for name in listed if name not in members),
         *(f"{shown(name)} is listed twice" for name, n in Counter(listed).items() if n > 1),
@@ -211,28 +193,26 @@ def project_arguments(members: Mapping[str, bytes]) -> dict[str, Any]:
         If a file is missing, wrong or not one of a project, or its format is another one.
     """
     document = project_document(members)
-
-    def option(row: StructureRow, name: str) -> Any:
-        return object_from_table(getattr(row, name), f"{DOCUMENT}, {name} of {shown(row.name)}", _CLASSES)
-
-    options: dict[str, dict[str, Any]] = {
-        name: {row.name: option(row, name) for row in document.structures if getattr(row, name) is not None}
-        for name in _OPTIONS
-    }
+    rows = {row.name: row for row in document.structures}
+    built = {name: structure_from_table(_toml_of(members, row.file), row.file) for name, row in rows.items()}
+    found = {name: _options_of_row(row, built[name]) for name, row in rows.items()}
     return {
-        "structures": {
-            row.name: structure_from_table(_toml_of(members, row.file), row.file) for row in document.structures
-        },
-        "motions": [record_of_member(members, row) for row in document.records],
-        "model": {row.name: row.model for row in document.structures},
-        **options,
+        "structures": built,
+        "motions": [record_of_member(members, row) for row in document.records.files or []],
+        "model": {name: row.models[0] for name, row in rows.items() if row.models},
+        **{option: {name: each[option] for name, each in found.items() if each[option]} for option in _OPTIONS},
         "rule": document.rule,
         "periods": document.periods,
         "free_vibration": document.free_vibration,
-        "limits": object_from_table({"class": "CheckLimits", **document.limits}, f"{DOCUMENT}, limits", _CLASSES),
+        "limits": object_from_table({CLASS: "CheckLimits", **document.limits}, f"{DOCUMENT}, limits", _LIMITS),
         "head": document.head,
         "results": document.results and _results(members, document.results),
     }
+
+
+def _options_of_row(row: StructureRow, structure: Any) -> dict[str, Any]:
+    ground = None if row.ground is None else row.ground.under(rocking_properties_of(structure))
+    return {"bouc_wen": row.hysteresis(), "impact": row.law(), "ground": ground, "initial": row.initial}
 
 
 def structure_keys(members: Mapping[str, bytes], row: StructureRow) -> dict[str, Any]:
@@ -244,12 +224,16 @@ def structure_keys(members: Mapping[str, bytes], row: StructureRow) -> dict[str,
         As `entry_of_object_table`.
     """
     structure = {"name": row.name, **entry_of_object_table(_toml_of(members, row.file), row.file)}
-    options = {name: getattr(row, name) for name in ("bouc_wen", "ground") if getattr(row, name) is not None}
-    found: dict[str, Any] = {"structure": structure, **arguments_in_table(options)}
+    options = row.options_in_file()
+    given = {name: options[name] for name in ("bouc_wen", "ground") if name in options}
+    found: dict[str, Any] = {"structure": structure, **arguments_in_table(given)}
     springs = found.get("ground", {}).get("springs")
     if isinstance(springs, dict):
         springs.pop("area", None)  # which only checks of pressures know
-    if (law := row.impact) is not None:
+    law = options.get("impact")
+    if isinstance(law, str):
+        found |= {name: options[name] for name in ("impact", "restitution") if name in options}
+    elif law is not None:
         found["impact"] = _LAW_NAMES.get(str(law.get(CLASS)), law)
         found |= {"restitution": law["e"]} if "e" in law else {}
     return found
@@ -263,7 +247,7 @@ def _toml_of(members: Mapping[str, bytes], name: str) -> dict[str, Any]:
     return _read(name, "TOML", lambda: tomllib.loads(unicode_text(content)))
 
 
-def record_of_member(members: Mapping[str, bytes], row: RecordRow) -> GroundMotion:
+def record_of_member(members: Mapping[str, bytes], row: RecordFile) -> GroundMotion:
     """Return the record of a row, scaled as it acts."""
     text = members[row.file]
     values = _read(row.file, "CSV with a line of labels", lambda: _columns(text.decode()))
@@ -271,11 +255,8 @@ def record_of_member(members: Mapping[str, bytes], row: RecordRow) -> GroundMoti
     if tuple(values) not in (labels[:2], labels):
         raise InputError(f"{row.file}: the columns must be {', '.join(labels)}, but {shown(list(values))} were given.")
     try:
-        info = None if row.info is None else TypeAdapter(RecordInfo).validate_python(row.info)
-    except ValidationError as error:
-        raise InputError(f"{DOCUMENT}, info of {shown(row.name)}: {shortened(str(error))}.") from error
-    try:
-        return GroundMotion(values[labels[1]], row.dt, row.name, info, values.get(labels[2]))
+        info = row.record_info(DOCUMENT)
+        return GroundMotion(values[labels[1]], row.dt or 0.0, row.name or "", info, values.get(labels[2]))
     except InputError as error:
         raise InputError(str(error), place=row.file) from error
 

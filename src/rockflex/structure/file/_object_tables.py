@@ -61,23 +61,26 @@ def _plain(name: str, value: Any) -> Any:
     return {CLASS: kind.__name__, **found}
 
 
-def object_from_table(table: Any, place: str, classes: Mapping[str, type] | None = None) -> Any:
+def object_from_table(table: Any, place: str, classes: Mapping[str, type] | None = None, *, only: bool = False) -> Any:
     """Return the object of a table; `place` names the table in messages.
 
     Parameters
     ----------
     table
         With a key `class`, the name of one of `structure_classes` or of `classes`.
+    only
+        Whether it must be one of `classes`.
 
     Raises
     ------
     InputError
         If the class or an argument is unknown or missing, or a value is wrong.
     """
-    known = structure_classes() | dict(classes or {})
+    known = {**({} if only else structure_classes()), **(classes or {})}
     if not isinstance(table, dict) or table.get(CLASS) not in known:
         given = shown(cast("dict[str, Any]", table).get(CLASS) if isinstance(table, dict) else table)
-        raise InputError(f"{place}: {CLASS} must be the name of one of rockflex's classes, but {given} was given.")
+        names = ", ".join(known) if only else "the name of one of rockflex's classes"
+        raise InputError(f"{place}: {CLASS} must be {names}, but {given} was given.")
     content = cast("dict[str, Any]", table)
     kind = known[content[CLASS]]
     hints, names = get_type_hints(kind), _arguments_of(kind)
@@ -88,7 +91,7 @@ def object_from_table(table: Any, place: str, classes: Mapping[str, type] | None
 
     def made(key: str, value: Any) -> Any:
         if isinstance(value, dict):
-            return object_from_table(value, f"{place}, {key}", classes)
+            return object_from_table(value, f"{place}, {key}", classes, only=only)
         if isinstance(value, list):
             entries = cast("list[Any]", value)
             numeric = Array in (hints.get(key), *get_args(hints.get(key)))
