@@ -139,6 +139,7 @@ def structures() -> Calls:
         "WallFrame": (rf.WallFrame, WALL),
         "FishBone": (rf.FishBone, BONE | BASE),
         "rigid_block": (rf.rigid_block, {"slenderness": 0.2, "half_diagonal": 2.0, "mass": 1.0}),
+        "block of sides": (rf.rigid_block, {"width": 0.6, "height": 2.0, "mass": 250.0}),
         "cosine_shapes": (rf.cosine_shapes, {"height": 10.0, "n_shapes": 2}),
         "Tendon": (
             rf.Tendon,
