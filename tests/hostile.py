@@ -187,6 +187,8 @@ def structures() -> Calls:
         "gazetas_bed": (rf.gazetas_bed, BED | SOIL | {"density": 1900.0, "end_zone": 0.5}),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
+        "block held": (rf.Restrained, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "elements": rf.Tendon(1e3, 1e5)}),
+        "block aside": (rf.Eccentric, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),
         "pivot": (p.pivot, {"side": -1}),
         "truncated": (p.truncated, {"n_modes": 1}),

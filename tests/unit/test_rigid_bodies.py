@@ -59,3 +59,44 @@ def test_defaults_in_signatures_can_be_read() -> None:
         if callable(made) and not isinstance(made, type):
             defaults = [each.default for each in inspect.signature(made).parameters.values()]
             assert all(len(each) < 10 for each in defaults if isinstance(each, tuple | list)), name
+
+
+BLOCK = rf.rigid_block(width=1.6, height=9.6, mass=20e3)
+PULSE = rf.one_sine_pulse(amplitude=4.0, period=1.0, dt=1e-3)
+
+
+def test_what_holds_a_block_in_python_is_what_holds_it_in_a_file(tmp_path) -> None:
+    tie = rf.Tendon(initial_force=5e3, stiffness=2e5, height=9.0)
+    held = rf.Restrained(rf.Eccentric(BLOCK, 0.1), [rf.Tendon(2e4, 1e6, position=0.2), tie])
+    (tmp_path / "held.toml").write_text(
+        "eccentricity = 0.1\nblock = { width = 1.6, height = 9.6, mass = 20e3 }\n"
+        '[[elements]]\nkind = "tendon"\ninitial_force = 2e4\nstiffness = 1e6\nposition = 0.2\n'
+        '[[elements]]\nkind = "tendon"\ninitial_force = 5e3\nstiffness = 2e5\nheight = 9.0\n'
+    )
+    assert held.rocking() == rf.read_structure(tmp_path / "held.toml").rocking()
+    one, other = rf.simulate(held, PULSE, "rigid"), rf.simulate(held.rocking(), PULSE, "rigid")
+    assert one == other
+    with pytest.raises(rf.InputError, match="no shapes of modes"):
+        held.modal()
+
+
+def test_a_tie_holds_a_block_like_a_spring_at_its_height() -> None:
+    """I_θ θ'' = -s (m g b - m h g |θ|) - m h a - k z² θ, linear on each side: the slow rotation under a tie alone."""
+    k, z, start = 3e5, 8.0, 0.05
+    held = rf.Restrained(BLOCK, [rf.Tendon(0.0, k, height=z), rf.Tendon(0.0, k, height=z, cosine=-1.0)])
+    run = rf.simulate(held, rf.quiet_motion(0.5), "rigid", initial=rf.InitialState(rotation=start))
+    assert run.history is not None
+    p, stiffness = BLOCK, k * z**2 - BLOCK.l0r * 9.81
+    rest, rate = -p.weight_moment / stiffness, math.sqrt(stiffness / p.i_theta)
+    inside = run.history.rotation > 0.02
+    expected = rest + (start - rest) * np.cos(rate * run.history.time[inside])
+    np.testing.assert_allclose(run.history.rotation[inside], expected, rtol=1e-10)
+
+
+def test_a_block_with_a_tendon_rocks_as_published() -> None:
+    """tan α = 1/6, R = 4.866 m, F_0 = 0.1 W, k = 0.8 W R/b², one sine of 4 m/s² and 1 s."""
+    alpha, r, mass = math.atan(1.0 / 6.0), 4.866, 1e3
+    weight, b = mass * 9.81, r * math.sin(alpha)
+    held = rf.Restrained(rf.rigid_block(alpha, r, mass), rf.Tendon(0.1 * weight, 0.8 * weight * r / b**2))
+    pulse = rf.one_sine_pulse(amplitude=4.0, period=1.0, dt=1e-4)
+    assert rf.simulate(held, pulse, "rigid-C", free_vibration=2.0).max_rotation == pytest.approx(0.09095764, abs=5e-8)

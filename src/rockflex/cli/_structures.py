@@ -17,9 +17,8 @@ from rockflex.structure._attachment import element_parameters
 from rockflex.structure._element_law import ElementLaw
 from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure._frames import Frame
-from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, structure_warnings
+from rockflex.structure._structure import Eccentric, has_shapes, innermost_structure, structure_warnings
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import KINDS, StructureEntry
@@ -127,17 +126,14 @@ class LoadedStructure:
     @property
     def properties(self) -> RockingProperties:
         """Parameters of the rocking structure with all its modes."""
-        return self.built if isinstance(self.built, RockingProperties) else self.built.rocking()
+        return self.built.rocking()
 
     @property
     def base_mass(self) -> float | None:
         """Mass of the base in kg; None where only properties are known."""
-        if isinstance(self.built, RockingProperties):
+        if not has_shapes(self.built):
             return None
-        structure = self.built
-        while isinstance(structure, Restrained | Eccentric | Leaning):
-            structure = structure.structure
-        return float(getattr(structure, "base_mass", 0.0))
+        return float(getattr(innermost_structure(self.built), "base_mass", 0.0))
 
     @property
     def reference_mass(self) -> float:

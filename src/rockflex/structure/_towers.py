@@ -343,7 +343,7 @@ def rigid_block(
         b, h = 0.5 * width, 0.5 * height
         r, moment = math.hypot(b, h), mass * h
     else:
-        alpha = checked_magnitude("slenderness", slenderness, 0.5 * math.pi, "rad")
+        alpha = checked_magnitude("slenderness", 0.0 if slenderness is None else slenderness, 0.5 * math.pi, "rad")
         if alpha <= 0.0:
             raise InputError(
                 f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",

@@ -245,12 +245,6 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
     based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
-    if based and entry.kind in ("properties", "block"):
-        return [
-            *lines,
-            "from dataclasses import replace",
-            f"structure = replace(structure, {_python_named_arguments(based)})",
-        ]
     wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
     return lines + [
         f"structure = rf.{wraps[name]}(structure, {_python_literal(value)})" for name, value in based.items()

@@ -154,13 +154,15 @@ def title_of_several_text(what: str, n: int) -> str:
 
 def structure_kind_text(structure: Any) -> str:
     """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
-    if isinstance(structure, RockingProperties):
-        return translated("Structure given by its rocking properties" if structure.n_modes else "Rigid block")
     around: list[str] = []
     while hasattr(structure, "structure"):  # restrained or eccentric
         around.append(translated(_class_name_in_words(structure).lower()))
         structure = structure.structure
-    return ", ".join([translated(_class_name_in_words(structure)), *around])
+    if isinstance(structure, RockingProperties):
+        what = "Structure given by its rocking properties" if structure.n_modes else "Rigid block"
+    else:
+        what = _class_name_in_words(structure)
+    return ", ".join([translated(what), *around])
 
 
 def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:

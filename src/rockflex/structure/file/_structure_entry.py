@@ -16,7 +16,7 @@ from rockflex.structure._elements import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, Structure
+from rockflex.structure._structure import Eccentric, Restrained, Structure, has_shapes
 from rockflex.structure._yielding_stories import YieldingStories
 from rockflex.structure.file._element_tables import ELEMENT_NAMES, AnyElementTable
 from rockflex.structure.file._structure_tables import STRUCTURES, Built, StructureTable
@@ -145,8 +145,7 @@ class StructureEntry(_OfKinds):
         """
         if not self.elements:
             return built
-        known = isinstance(built, RockingProperties)
-        alone = built if known else built.rocking(1)
+        alone = built.rocking(1 if has_shapes(built) else None)
         elements: list[BaseElement] = []
         for place, table in enumerate(self.elements):
             heading, row = f"[[elements]] no. {place + 1}", f"elements.{place}"
@@ -159,7 +158,9 @@ class StructureEntry(_OfKinds):
             except InputError as error:  # it is outside the base, or at no floor
                 name = error.field if error.field in PLACE else "position"
                 raise InputError(str(error), place=heading, field=f"{row}.{name}") from error
-        return replace(built, elements=elements) if known else Restrained(built, elements)
+        return (
+            replace(built, elements=elements) if isinstance(built, RockingProperties) else Restrained(built, elements)
+        )
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
