@@ -146,6 +146,7 @@ def structures() -> Calls:
             {"initial_force": 1e5, "stiffness": 1e6, "position": 0.0, "yield_force": 2e5, "post_yield_ratio": 0.02,
              "rupture_elongation": 0.3},
         ),
+        "Tendon that snaps": (rf.Tendon, {"initial_force": 1e5, "stiffness": 1e6, "rupture_elongation": 0.02}),
         "YieldingDissipator": (
             rf.YieldingDissipator,
             {"stiffness": 1e7, "yield_force": 1e5, "post_yield_ratio": 0.02, "position": 0.2, "tension_only": False,

@@ -100,3 +100,32 @@ def test_a_block_with_a_tendon_rocks_as_published() -> None:
     held = rf.Restrained(rf.rigid_block(alpha, r, mass), rf.Tendon(0.1 * weight, 0.8 * weight * r / b**2))
     pulse = rf.one_sine_pulse(amplitude=4.0, period=1.0, dt=1e-4)
     assert rf.simulate(held, pulse, "rigid-C", free_vibration=2.0).max_rotation == pytest.approx(0.09095764, abs=5e-8)
+
+
+@pytest.mark.parametrize("model", ["rigid", "rigid-C"])
+def test_an_elastic_tendon_pulls_until_it_snaps(model: str) -> None:
+    k, start, snaps = 2e6, 3e4, 0.012
+    tendon = rf.Tendon(start, k, rupture_elongation=snaps)
+    whole = rf.simulate(rf.Restrained(BLOCK, rf.Tendon(start, k)), PULSE, model)
+    held = rf.simulate(rf.Restrained(BLOCK, tendon), PULSE, model)
+    strong = rf.simulate(rf.Restrained(BLOCK, rf.Tendon(start, k, rupture_elongation=10.0)), PULSE, model)
+    assert strong.max_rotation == pytest.approx(whole.max_rotation, rel=1e-9)
+    assert abs(held.max_rotation - whole.max_rotation) > 0.1 * whole.max_rotation
+    assert held.max_element_force[0] == pytest.approx(start + k * snaps, rel=1e-12)
+    assert (held.remaining_prestress[0], strong.remaining_prestress[0]) == (0.0, pytest.approx(start))
+    assert not held.tendon_overload
+    lost = (start + k * snaps) ** 2 / (2.0 * k)  # all that it stores when it breaks, F²/2k
+    assert held.element_energy[0] == pytest.approx(lost, rel=1e-9)
+    assert np.abs(held.energy.residual).max() < 1e-9 * held.energy.input.max()
+
+
+def test_a_tendon_that_snaps_falls_to_zero_in_a_slow_push() -> None:
+    snaps = 0.016
+    pushed = rf.moment_rotation(rf.Restrained(BLOCK, rf.Tendon(3e4, 2e6, rupture_elongation=snaps)), [0.04, 0.0])
+    turn, force = pushed.rotation, pushed.element_force[:, 0]
+    before = turn * 0.8 < snaps * (1.0 - 1e-9)
+    first = np.arange(turn.size) < int(np.argmax(turn))
+    np.testing.assert_allclose(force[first & before], 3e4 + 2e6 * 0.8 * turn[first & before], rtol=1e-12)
+    assert force[~first].max() == 0.0
+    with pytest.raises(rf.InputError, match="with stiffness"):
+        rf.Tendon(3e4, 0.0, rupture_elongation=0.1)

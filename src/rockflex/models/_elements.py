@@ -219,9 +219,13 @@ def _element_of(given: BaseElement) -> Element:
         return YieldingElement(
             given.stiffness, given.yield_force, given.post_yield_ratio, position, 0.0, given.tension_only, rupture
         )
-    if given.post_yield_ratio is None or given.yield_force is None:
+    if given.stays_elastic:
         return ElasticElement(given.stiffness, given.initial_force, position)
     stretched = given.initial_force / given.stiffness
+    if given.post_yield_ratio is None or given.yield_force is None:  # it snaps before any force at which it would yield
+        return YieldingElement(
+            given.stiffness, 2.0 * given.stiffness * (stretched + rupture), 0.0, position, stretched, True, rupture
+        )
     return YieldingElement(
         given.stiffness, given.yield_force, given.post_yield_ratio, position, stretched, True, rupture
     )

@@ -143,7 +143,7 @@ def is_moment_path_independent(properties: RockingProperties) -> bool:
     return all(
         not any(branch.yields for branch in each.law.values())
         if isinstance(each, ElementLaw)
-        else isinstance(each, Tendon) and each.post_yield_ratio is None
+        else isinstance(each, Tendon) and each.stays_elastic
         for each in properties.elements
     )
 

@@ -310,12 +310,18 @@ def _largest_force(element: OwnElement, move: ElementExtremes) -> float:
         return element.coefficient * move.speed
     if isinstance(element, FrictionDamper):
         return element.force if _yields(element, move) else 0.0
+    longest = _longest(element, move)
     if isinstance(element, Tendon) and element.post_yield_ratio is None:
-        return element.initial_force + element.stiffness * move.high
+        return element.initial_force + element.stiffness * longest
     first = element.initial_force / element.stiffness if isinstance(element, Tendon) else 0.0
-    high = first + min(move.high, math.inf if element.rupture_elongation is None else element.rupture_elongation)
+    high = first + longest
     low = 0.0 if _pulls_only(element) else first + move.low
     return max(_first_loading(element, high), _first_loading(element, -low))
+
+
+def _longest(element: Tendon | YieldingDissipator, move: ElementExtremes) -> float:
+    """Return the largest elongation in m of a bar that is not broken."""
+    return min(move.high, math.inf if element.rupture_elongation is None else element.rupture_elongation)
 
 
 def _first_loading(element: Tendon | YieldingDissipator, stretch: float) -> float:
@@ -333,7 +339,7 @@ def _yields(element: OwnElement, move: ElementExtremes) -> bool:
         return move.low != 0.0 or move.high != 0.0
     if isinstance(element, Tendon):
         limit = math.inf if element.yield_force is None else element.yield_force
-        return element.initial_force + element.stiffness * move.high > limit
+        return element.initial_force + element.stiffness * _longest(element, move) > limit
     low = 0.0 if element.tension_only else move.low
     return element.stiffness * max(move.high, -low) > element.yield_force
 

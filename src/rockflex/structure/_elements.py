@@ -71,10 +71,11 @@ class Tendon(Attachment):
     rupture_elongation: Annotated[
         float | None,
         Described(
-            "the elongation at which a tendon that yields breaks",
+            "the elongation at which the tendon breaks",
             "m",
             rule="positive",
-            note="For good, counted from the base in contact. Default: it never does.",
+            note="For good, counted from the base in contact; one that does not yield is elastic until it snaps. "
+            "Default: it never does.",
         ),
     ] = None
 
@@ -92,14 +93,20 @@ class Tendon(Attachment):
                 f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
                 field="yield_force" if self.yield_force is None else "stiffness",
             )
-        if self.rupture_elongation is not None:
-            if self.yield_force is None or self.post_yield_ratio is None:
-                raise InputError(
-                    "rupture_elongation is for a tendon that yields. Give yield_force and post_yield_ratio as well.",
-                    field="rupture_elongation",
-                )
+        if self.rupture_elongation is not None and self.stiffness == 0.0:
+            raise InputError(
+                "rupture_elongation needs a tendon with stiffness, but stiffness = 0 N/m was given. Give EA/L in N/m, "
+                "or leave rupture_elongation out.",
+                field="stiffness",
+            )
+        if self.rupture_elongation is not None and self.post_yield_ratio is not None and self.yield_force is not None:
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
             _check_rupture_elongation(self.rupture_elongation, yields_at)
+
+    @property
+    def stays_elastic(self) -> bool:
+        """Whether the tendon neither yields nor breaks, however far it is stretched."""
+        return self.post_yield_ratio is None and self.rupture_elongation is None
 
 
 def _check_rupture_elongation(limit: float, yields_at: float) -> None:

@@ -117,7 +117,7 @@ def result_columns(
 
 
 def _has_dissipating_elements(properties: RockingProperties) -> bool:
-    return any(not isinstance(each, Tendon) or each.post_yield_ratio is not None for each in properties.elements)
+    return any(not (isinstance(each, Tendon) and each.stays_elastic) for each in properties.elements)
 
 
 REACTION = "min_vertical_reaction"

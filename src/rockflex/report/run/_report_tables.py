@@ -159,10 +159,10 @@ def structure_kind_text(structure: Any) -> str:
         around.append(translated(_class_name_in_words(structure).lower()))
         structure = structure.structure
     if isinstance(structure, RockingProperties):
-        what = "Structure given by its rocking properties" if structure.n_modes else "Rigid block"
+        kind = translated("Structure given by its rocking properties" if structure.n_modes else "Rigid block")
     else:
-        what = _class_name_in_words(structure)
-    return ", ".join([translated(what), *around])
+        kind = translated(_class_name_in_words(structure))
+    return ", ".join([kind, *around])
 
 
 def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:
@@ -434,6 +434,8 @@ def _element_table_row(
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
     name, properties, state = describe_element(element, units)
+    longest = getattr(element, "rupture_elongation", None)
+    tendon, broke = isinstance(element, Tendon), longest is not None and elongation >= longest
     return [
         ReportCell(f"{place + 1} {name}"),
         ReportCell(element.where_in(units.of("length")))
@@ -442,7 +444,7 @@ def _element_table_row(
         ReportCell(properties),
         value_cell(force, f"max_element_force_{place + 1}", units.of("force").size),
         value_cell(elongation, f"max_element_elongation_{place + 1}", units.of("displacement").size),
-        ReportCell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
+        ReportCell(translated("broke") if broke else state[yielded], None, "", broke or (yielded and tendon)),
     ]
 
 
