@@ -59,7 +59,7 @@ def labels():
     """The texts that are looked up by value, from the tables that hold them."""
     kinds = {name: it for name, it in vars(rf.structure).items() if isinstance(it, type) and hasattr(it, "rocking")}
     modified = {name for name, it in kinds.items() if issubclass(it, rf.structure._structure.ModifiedStructure)}
-    yield from (words_of_class(name) for name in kinds if name not in modified)
+    yield from (words_of_class(name) for name in kinds if name not in (*modified, "RockingProperties"))
     yield from (words_of_class(name).lower() for name in modified)
     yield from (*STATUS.values(), *ASSUMPTIONS, *SIDES, *STATISTICS.values(), *STATISTIC_HEADS.values(), *SOURCES)
     yield from (OUTPUTS[name].symbol for name in (*DEMANDS_OF_SET, *COMPARED_DEMANDS))

@@ -139,12 +139,14 @@ def structures() -> Calls:
         "WallFrame": (rf.WallFrame, WALL),
         "FishBone": (rf.FishBone, BONE | BASE),
         "rigid_block": (rf.rigid_block, {"slenderness": 0.2, "half_diagonal": 2.0, "mass": 1.0}),
+        "block of sides": (rf.rigid_block, {"width": 0.6, "height": 2.0, "mass": 250.0}),
         "cosine_shapes": (rf.cosine_shapes, {"height": 10.0, "n_shapes": 2}),
         "Tendon": (
             rf.Tendon,
             {"initial_force": 1e5, "stiffness": 1e6, "position": 0.0, "yield_force": 2e5, "post_yield_ratio": 0.02,
              "rupture_elongation": 0.3},
         ),
+        "Tendon that snaps": (rf.Tendon, {"initial_force": 1e5, "stiffness": 1e6, "rupture_elongation": 0.02}),
         "YieldingDissipator": (
             rf.YieldingDissipator,
             {"stiffness": 1e7, "yield_force": 1e5, "post_yield_ratio": 0.02, "position": 0.2, "tension_only": False,
@@ -186,6 +188,8 @@ def structures() -> Calls:
         "gazetas_bed": (rf.gazetas_bed, BED | SOIL | {"density": 1900.0, "end_zone": 0.5}),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
+        "block held": (rf.Restrained, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "elements": rf.Tendon(1e3, 1e5)}),
+        "block aside": (rf.Eccentric, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),
         "pivot": (p.pivot, {"side": -1}),
         "truncated": (p.truncated, {"n_modes": 1}),

@@ -359,7 +359,7 @@ def test_keys_of_elements_are_the_arguments_of_their_classes(write):
     [
         ("tendon", {"yield_force": 4e5}, "initial_force must not exceed yield_force, 400000 N, but 500000 N was"),
         ("tendon", {"yield_force": None}, "post_yield_ratio needs the yield_force in N of a tendon with stiffness"),
-        ("tendon", {"post_yield_ratio": None}, "rupture_elongation is for a tendon that yields. Give yield_force"),
+        ("tendon", {"post_yield_ratio": None, "stiffness": 0.0}, "rupture_elongation needs a tendon with stiffness"),
         ("tendon", {"rupture_elongation": 0.01}, "rupture_elongation must be beyond the elongation at yield, 0.02 m"),
         ("yielding_dissipator", {"rupture_elongation": 0.001}, "rupture_elongation must be beyond the elongation"),
         ("yielding_dissipator", {"position": 0.9}, "Elements must act within half_width = 0.842617 m to each side"),

@@ -76,8 +76,8 @@ def test_other_refusals():
         held([rf.Tendon(1.0, 1.0, 1.3), rf.Tendon(1.0, 1.0, -1.3)])
     with pytest.raises(rf.InputError, match=r"elements must be Tendon, .* objects, .*but 3 was given\. Write Tendon\("):
         held(3)
-    with pytest.raises(rf.InputError, match=r"RockingProperties have elements of their own"):
-        rf.Restrained(rf.RockingProperties(**BY_HAND), CENTRAL)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(rf.InputError, match=r"structure must be a structure"):
+        rf.Restrained(3.0, CENTRAL)  # pyright: ignore[reportArgumentType]
 
 
 @pytest.mark.parametrize("model", ["MDOF-S", "MDOF-C-SI", "2DOF-S", "rigid-C"])

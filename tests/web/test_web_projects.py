@@ -175,7 +175,8 @@ def test_a_project_of_python_opens_with_the_same_responses(client, tmp_path) -> 
 def test_several_records_open_as_a_folder_and_blocks_as_blocks(client, tmp_path) -> None:
     records = {"one": PULSE, "two/2": PULSE.scaled(0.8)}
     state = opened(client, project_file(tmp_path, {"block": BLOCK}, records, "rigid"))["state"]
-    assert state["structure"]["block"] == pytest.approx({"slenderness": 0.2, "half_diagonal": 3.0, "mass": 5e4})
+    sides = {"width": 6.0 * math.sin(0.2), "height": 6.0 * math.cos(0.2), "mass": 5e4}
+    assert state["structure"]["block"] == pytest.approx(sides)
     assert (state["record"]["source"], state["record"]["given"], state["scale"]) == ("folder", "one", 1.0)
     report = json.loads(client.request(f"/api/folder/{state['record']['folder']}")[2])
     assert [each["name"] for each in report["entries"]] == ["one", "two_2"]

@@ -202,10 +202,10 @@ def _write_modes(
 ) -> None:
     import pandas as pd
 
-    from rockflex.structure._rocking import RockingProperties
+    from rockflex.structure._structure import has_shapes
 
     built = loaded.built
-    drawn = not isinstance(built, RockingProperties)
+    drawn = has_shapes(built)
     with output.staged_output_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")

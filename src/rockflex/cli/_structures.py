@@ -15,9 +15,8 @@ from rockflex.foundation.units import UnitSystem
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._frames import Frame
-from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, structure_warnings
+from rockflex.structure._structure import Eccentric, has_shapes, innermost_structure, structure_warnings
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import KINDS
@@ -104,17 +103,14 @@ class LoadedStructure:
     @property
     def properties(self) -> RockingProperties:
         """Parameters of the rocking structure with all its modes."""
-        return self.built if isinstance(self.built, RockingProperties) else self.built.rocking()
+        return self.built.rocking()
 
     @property
     def base_mass(self) -> float | None:
         """Mass of the base in kg; None where only properties are known."""
-        if isinstance(self.built, RockingProperties):
+        if not has_shapes(self.built):
             return None
-        structure = self.built
-        while isinstance(structure, Restrained | Eccentric | Leaning):
-            structure = structure.structure
-        return float(getattr(structure, "base_mass", 0.0))
+        return float(getattr(innermost_structure(self.built), "base_mass", 0.0))
 
     @property
     def reference_mass(self) -> float:

@@ -219,7 +219,7 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
         max_tendon_force=max((force for _, force, _ in tendons), default=0.0),
         tendon_utilisation=max(shares, default=math.nan) if tendons else 0.0,
         tendon_yield=any(beyond for _, _, beyond in tendons),
-        tendon_overload=any(beyond and not each.dissipates for each, _, beyond in tendons),
+        tendon_overload=any(beyond and each.post_yield_ratio is None for each, _, beyond in tendons),
         **of_stories,
     )
 

@@ -75,10 +75,11 @@ class Tendon(BaseElement):
     rupture_elongation: Annotated[
         float | None,
         Described(
-            "the elongation at which a tendon that yields breaks",
+            "the elongation at which the tendon breaks",
             "m",
             rule="positive",
-            note="For good, counted from the base in contact. Default: it never does.",
+            note="For good, counted from the base in contact; one that does not yield is elastic until it snaps. "
+            "Default: it never does.",
         ),
     ] = None
 
@@ -96,12 +97,13 @@ class Tendon(BaseElement):
                 f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
                 field="yield_force" if self.yield_force is None else "stiffness",
             )
-        if self.rupture_elongation is not None:
-            if self.yield_force is None or self.post_yield_ratio is None:
-                raise InputError(
-                    "rupture_elongation is for a tendon that yields. Give yield_force and post_yield_ratio as well.",
-                    field="rupture_elongation",
-                )
+        if self.rupture_elongation is not None and self.stiffness == 0.0:
+            raise InputError(
+                "rupture_elongation needs a tendon with stiffness, but stiffness = 0 N/m was given. Give EA/L in N/m, "
+                "or leave rupture_elongation out.",
+                field="stiffness",
+            )
+        if self.rupture_elongation is not None and self.post_yield_ratio is not None and self.yield_force is not None:
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
             _check_rupture_elongation(self.rupture_elongation, yields_at)
 
@@ -111,15 +113,19 @@ class Tendon(BaseElement):
         return translated("elastic"), translated("beyond F_y" if self.post_yield_ratio is None else "yielded")
 
     def branched(self) -> Element:
-        """Return it as its branches: elastic, slack, and those of a bar that yields."""
-        if self.post_yield_ratio is None or self.yield_force is None:
+        """Return it as its branches: elastic, slack, and those of a bar that yields or breaks."""
+        if not self.dissipates:
             return ElasticElement(self.stiffness, self.initial_force, self.place)
+        stretched = self.initial_force / self.stiffness
+        limit, ratio = self.yield_force, self.post_yield_ratio
+        if limit is None or ratio is None:  # it snaps before any force at which it would yield
+            limit, ratio = 2.0 * self.stiffness * (stretched + self.breaks_at), 0.0
         return YieldingElement(
             self.stiffness,
-            self.yield_force,
-            self.post_yield_ratio,
+            limit,
+            ratio,
             self.place,
-            stretched=self.initial_force / self.stiffness,
+            stretched=stretched,
             pulls_only=True,
             rupture=self.breaks_at,
         )
@@ -133,7 +139,7 @@ class Tendon(BaseElement):
 
     def extremes(self, low: float, high: float, speed: float = 0.0) -> tuple[float, bool]:  # noqa: ARG002
         """Return the largest force in N, and whether it yields; if it stays elastic, whether it exceeds F_y."""
-        force = self.initial_force + self.stiffness * high
+        force = self.initial_force + self.stiffness * min(high, self.breaks_at)
         yields = self.yield_force is not None and force > self.yield_force
         if self.post_yield_ratio is not None:
             stretch = self.initial_force / self.stiffness + min(high, self.breaks_at)
@@ -152,8 +158,8 @@ class Tendon(BaseElement):
 
     @property
     def dissipates(self) -> bool:
-        """Whether it yields."""
-        return self.post_yield_ratio is not None
+        """Whether it yields or breaks."""
+        return self.post_yield_ratio is not None or self.rupture_elongation is not None
 
     @property
     def recentres(self) -> bool:
@@ -183,7 +189,7 @@ class Tendon(BaseElement):
     def compared_parameters(self) -> dict[str, Any]:
         """Return its parameters; the yield force is only compared with, unless it yields."""
         found = super().compared_parameters()
-        return found if self.dissipates else found | {"yield_force": None}
+        return found | {"yield_force": None} if self.post_yield_ratio is None else found
 
 
 def _force_beyond_yield(force: float, limit: float | None, ratio: float | None) -> float:

@@ -11,7 +11,7 @@ from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import ModifiedStructure, Structure
+from rockflex.structure._structure import Structure, has_shapes, innermost_structure
 from rockflex.structure._towers import CantileverWithTipMass
 
 Kind = Literal["block", "frame", "column", "mast"]
@@ -104,8 +104,8 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
     modes = None
     if not p.n_modes:
         kind: Kind = "block"
-    elif structure is not None and not isinstance(structure, RockingProperties):
-        kind, modes = _outline_kind(structure), structure.modal()
+    elif has_shapes(structure):
+        kind, modes = _outline_kind(structure), structure.modal()  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
     elif p.floors is not None:
         kind = "frame" if p.floors.heights.size > 1 else "mast"
     else:
@@ -121,11 +121,10 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
 
 
 def _outline_kind(structure: Any) -> Kind:
-    while isinstance(structure, ModifiedStructure):
-        structure = structure.structure
-    if isinstance(structure, CantileverWithTipMass):
+    inner = innermost_structure(structure)
+    if isinstance(inner, CantileverWithTipMass):
         return "mast"
-    return "frame" if isinstance(structure, Frame | FishBone | LumpedStructure) else "column"
+    return "frame" if isinstance(inner, Frame | FishBone | LumpedStructure) else "column"
 
 
 def _heights_and_shapes(p: RockingProperties, modes: ModalProperties | None) -> tuple[Array, Array]:

@@ -242,6 +242,10 @@ class RockingProperties(HtmlTable, Value):
             stories=checked_stories(stories, floors, modes["omega"].size),
         )
 
+    def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":
+        """Return these properties, or those of the first `n_modes` modes, as every structure has them."""
+        return self if n_modes is None else self.truncated(n_modes)
+
     @property
     def n_modes(self) -> int:
         """Number of modes n."""

@@ -65,10 +65,23 @@ class AssembledStructure(ABC):
 class ModifiedStructure:
     """A structure that has the modes of another one, and some other properties."""
 
-    structure: Structure
+    structure: Any  # a structure, or RockingProperties where the change needs no more
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base (default: all)."""
+        """Return the first `n_modes` modes on a fixed base (default: all).
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the number that the structure has, or it is a rigid block or given by its
+            `RockingProperties`.
+        """
+        if isinstance(self.structure, RockingProperties):
+            raise InputError(
+                "A structure given by its RockingProperties has no shapes of modes. Give a structure with floors, such "
+                "as a Frame, or use rocking().",
+                field="structure",
+            )
         return self.structure.modal(n_modes)
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
@@ -81,6 +94,10 @@ class ModifiedStructure:
             known = vars(self)["_known"] = base, replace(base, **self._changes())
         return known[1]
 
+    def check(self) -> None:
+        """Check that the properties fit those of the structure; one of its modes is enough for that."""
+        self.rocking(1 if has_shapes(self.structure) else None)
+
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_known"}
 
@@ -92,6 +109,35 @@ class ModifiedStructure:
 def is_structure(given: object) -> bool:
     """Tell whether something has modes and can rock; a class of structures does not."""
     return not isinstance(given, type) and hasattr(given, "rocking") and hasattr(given, "modal")
+
+
+def checked_structure(given: Structure | RockingProperties) -> Structure | RockingProperties:
+    """Return a structure, or the properties of one.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if not is_structure(given) and not isinstance(given, RockingProperties):
+        raise InputError(
+            "structure must be a structure such as a Frame, a rigid_block or RockingProperties, but "
+            f"{shown(given)} was given.",
+            field="structure",
+        )
+    return given
+
+
+def innermost_structure(structure: Any) -> Any:
+    """Return what stands on an eccentric base, is restrained, or is modified in another way."""
+    while isinstance(structure, ModifiedStructure):
+        structure = structure.structure
+    return structure
+
+
+def has_shapes(structure: Any) -> bool:
+    """Tell whether the shapes of the modes of a structure are known; its `RockingProperties` have none."""
+    return structure is not None and not isinstance(innermost_structure(structure), RockingProperties)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +200,12 @@ class Eccentric(ModifiedStructure):
 
     It rotates about the right edge of the base, at a distance B - e from the axis, or about the left edge, at B + e.
     Inertia and resisting moment differ between the two sides, and the base lifts sooner about the nearer edge. The
-    modes on a fixed base do not change. For a structure given only by its `RockingProperties`, set `eccentricity`
-    there.
+    modes on a fixed base do not change.
 
     Attributes
     ----------
     structure
-        Any structure: a `Frame`, a `TaperedTower`, a `Restrained` one ...
+        Any structure: a `Frame`, a `rigid_block`, a `Restrained` one ...
     eccentricity : float
         Distance e of the axis to the right of the middle of the base in m; negative to the left. Its magnitude is
         smaller than B.
@@ -182,18 +227,13 @@ class Eccentric(ModifiedStructure):
     (1.118, 1.518)
     """
 
-    structure: Structure
+    structure: Structure | RockingProperties
     eccentricity: float
 
-    def __init__(self, structure: Structure, eccentricity: float) -> None:
-        if not is_structure(structure):
-            raise InputError(
-                f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "have an eccentricity of their own: RockingProperties(..., eccentricity=...).",
-                field="structure",
-            )
-        vars(self).update(structure=structure, eccentricity=checked_finite("eccentricity", eccentricity, "m"))
-        self.rocking(1)  # checks that the axis and the tendons are within the base
+    def __init__(self, structure: Structure | RockingProperties, eccentricity: float) -> None:
+        e = checked_finite("eccentricity", eccentricity, "m")
+        vars(self).update(structure=checked_structure(structure), eccentricity=e)
+        self.check()  # whether the axis and the tendons are within the base
 
     def _changes(self) -> dict[str, Any]:
         return {"eccentricity": self.eccentricity}
@@ -205,14 +245,14 @@ class Restrained(ModifiedStructure):
 
     Unbonded post-tensioned tendons increase the resisting moment and add a restoring rotational stiffness (Silva &
     Stojadinović 2024, Section 4.1); the other elements take energy out of the rocking. The modes on a fixed base do
-    not change. For a structure given only by its `RockingProperties`, set `elements` there.
+    not change.
 
     Attributes
     ----------
     structure
-        Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
+        Any structure: a `Frame`, a `rigid_block`, an `Eccentric` one ...
     elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
-        Any number of them, at any positions within the base.
+        Any number of them, at any positions within the base; of a rigid block also ties from any height.
 
     Raises
     ------
@@ -232,18 +272,12 @@ class Restrained(ModifiedStructure):
     1.212
     """
 
-    structure: Structure
+    structure: Structure | RockingProperties
     elements: tuple[BaseElement, ...]
 
-    def __init__(self, structure: Structure, elements: BaseElement | Iterable[BaseElement]) -> None:
-        if not is_structure(structure):
-            raise InputError(
-                f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
-                "have elements of their own: RockingProperties(..., elements=...).",
-                field="structure",
-            )
-        vars(self).update(structure=structure, elements=base_element_tuple(elements))
-        self.rocking(1)  # checks that they are within the base
+    def __init__(self, structure: Structure | RockingProperties, elements: BaseElement | Iterable[BaseElement]) -> None:
+        vars(self).update(structure=checked_structure(structure), elements=base_element_tuple(elements))
+        self.check()  # whether they are within the base
 
     @property
     def tendons(self) -> tuple[Tendon, ...]:
@@ -281,17 +315,8 @@ def structure_warnings(structure: Any) -> tuple[str, ...]:
     ...     print(warning)
     The tip has a mass of 60 kg, less than a tenth of the 48000 kg of its column. Masses are in kg: a tonne is 1000 kg.
     """
-    if isinstance(structure, RockingProperties):
-        return _period_warnings(structure)
-    if not is_structure(structure):
-        raise InputError(
-            f"structure must be a structure, such as a Frame, or RockingProperties, but {shown(structure)} was given.",
-            field="structure",
-        )
-    found = _period_warnings(structure.rocking())
-    while isinstance(structure, ModifiedStructure):
-        structure = structure.structure
-    return found + (structure.unit_warnings() if isinstance(structure, AssembledStructure) else ())
+    found, inner = _period_warnings(checked_structure(structure).rocking()), innermost_structure(structure)
+    return found + (inner.unit_warnings() if isinstance(inner, AssembledStructure) else ())
 
 
 def _period_warnings(properties: RockingProperties) -> tuple[str, ...]:

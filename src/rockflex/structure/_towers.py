@@ -277,52 +277,95 @@ class CantileverWithTipMass(AssembledStructure, Value):
 
 
 @described(title="Rigid block")
-@explaining_overflow("The inertia of a block with this half_diagonal and mass")
+@explaining_overflow("The inertia of a block with these sizes and this mass")
 def rigid_block(
     slenderness: Annotated[
-        float,
-        Described("atan(b/h) of the half sides", "rad", note="α, above 0 and below π/2.", low=1e-4, high=1.5),
-    ],
+        float | None,
+        Described(
+            "atan(b/h) of the half sides (or give width and height)",
+            "rad",
+            note="α, above 0 and below π/2.",
+            low=1e-4,
+            high=1.5,
+        ),
+    ] = None,
     half_diagonal: Annotated[
-        float,
-        Described("the distance from the corner to the centre", "m", rule="positive", note="R.", low=1e-3, high=1000.0),
-    ],
+        float | None,
+        Described(
+            "the distance from the corner to the centre (or give width and height)",
+            "m",
+            rule="positive",
+            note="R.",
+            low=1e-3,
+            high=1000.0,
+        ),
+    ] = None,
     mass: Annotated[float, Described("the mass, which rotations do not depend on", "kg", rule="positive")] = 1.0,
+    *,
+    width: Annotated[
+        float | None,
+        Described("the width 2 b in the plane of rocking", "m", rule="positive", low=1e-3, high=1000.0),
+    ] = None,
+    height: Annotated[float | None, Described("the height 2 h", "m", rule="positive", low=1e-3, high=1000.0)] = None,
 ) -> RockingProperties:
     """Return the properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
 
     I_θ = 4/3 m R², B = R sin α, L_0^r = m R cos α; the frequency parameter is p² = 3 g/(4 R). Housner's coefficient
-    1 - 2 m B²/I_θ is 1 - 1.5 sin² α (Housner 1963, Bull. Seism. Soc. Am. 53(2), 403-417).
+    1 - 2 m B²/I_θ is 1 - 1.5 sin² α (Housner 1963, Bull. Seism. Soc. Am. 53(2), 403-417). The block is given by its
+    `width` and `height`, or by `slenderness` and `half_diagonal`.
 
     Raises
     ------
     InputError
-        If a value is out of range.
+        If a value is out of range, or the sizes are not given by one of the pairs.
 
     Examples
     --------
     >>> import rockflex as rf
+    >>> cabinet = rf.rigid_block(width=0.6, height=2.0, mass=250.0)
+    >>> round(cabinet.half_width, 3), round(cabinet.uplift_acceleration, 3)
+    (0.3, 2.943)
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
     >>> round(block.half_width, 3), round(block.resisting_moment, 3)
     (0.742, 7.281)
     """
-    alpha = checked_magnitude("slenderness", slenderness, 0.5 * math.pi, "rad")
-    if alpha <= 0.0:
+    sides = {"width": width, "height": height}
+    polar = {"slenderness": slenderness, "half_diagonal": half_diagonal}
+    given = [name for name, value in (sides | polar).items() if value is not None]
+    if given not in ([*sides], [*polar]):
         raise InputError(
-            f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
-            field="slenderness",
+            f"A block is given by width and height in m, or by slenderness in rad and half_diagonal in m, but "
+            f"{' and '.join(given) or 'neither'} {'were' if len(given) > 1 else 'was'} given. Write "
+            "rigid_block(width=0.6, height=2.0, mass=250.0), for instance.",
+            field=given[-1] if given else "width",
         )
-    r, m = half_diagonal, mass
+    if width is not None and height is not None:
+        b, h = 0.5 * width, 0.5 * height
+        r, moment = math.hypot(b, h), mass * h
+    else:
+        alpha = checked_magnitude("slenderness", 0.0 if slenderness is None else slenderness, 0.5 * math.pi, "rad")
+        if alpha <= 0.0:
+            raise InputError(
+                f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
+                field="slenderness",
+            )
+        r = half_diagonal or 0.0
+        b, h, moment = r * math.sin(alpha), r * math.cos(alpha), mass * r * math.cos(alpha)
+    return _body_without_modes(4.0 / 3.0 * mass * r**2, moment, mass, b, 2.0 * h)
+
+
+def _body_without_modes(i_theta: float, l0r: float, mass: float, half_width: float, top: float) -> RockingProperties:
+    """Return a rigid body with its top at some height."""
     return RockingProperties(
         omega=(),
         effective_mass=(),
         effective_height=(),
         top_ordinate=(),
-        i_theta=4.0 / 3.0 * m * r**2,
-        l0r=m * r * math.cos(alpha),
-        m_tot=m,
-        half_width=r * math.sin(alpha),
+        i_theta=i_theta,
+        l0r=l0r,
+        m_tot=mass,
+        half_width=half_width,
         zeta=(),
-        top_height=2.0 * r * math.cos(alpha),
+        top_height=top,
         base_mass=0.0,
     )

@@ -52,8 +52,6 @@ class RockingStructure(Protocol):
 
 def rocking_properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
     """Return the properties of a structure, or the properties themselves if they are given."""
-    if isinstance(structure, RockingProperties):
-        return structure
     if not is_structure_or_properties(structure):
         raise InputError(
             "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
@@ -64,7 +62,7 @@ def rocking_properties_of(structure: RockingStructure | RockingProperties) -> Ro
 
 def is_structure_or_properties(given: object) -> bool:
     """Return whether `given` is a structure or its properties; a class is not."""
-    return isinstance(given, RockingProperties) or (hasattr(given, "rocking") and not isinstance(given, type))
+    return hasattr(given, "rocking") and not isinstance(given, type)
 
 
 def type_description(given: Any) -> str:

@@ -232,7 +232,7 @@ def overturning_spectrum(
     frequency_ratios: Sequence[float],
     model: str | Model = "rigid",
     impact: ImpactLaw | None = None,
-    relative_amplitudes: Sequence[float] = SCAN,
+    relative_amplitudes: Sequence[float] | None = None,
     tolerance: float = 1e-6,
     workers: SupportsIndex | None = None,
     work_limit: WorkLimit = "default",
@@ -255,7 +255,7 @@ def overturning_spectrum(
     frequency_ratios
         ω_g/p, positive.
     relative_amplitudes
-        a_p/(g α) to try, rising; see `overturning_scales` for what the scan can miss.
+        a_p/(g α) to try, rising; by default 1, 1.1, 1.2, ... 30. See `overturning_scales` for what the scan can miss.
     tolerance
         Relative width of the boundaries.
     workers
@@ -288,7 +288,7 @@ def overturning_spectrum(
     0              3.0   1.387
     """
     ratios = checked_positive_numbers("frequency_ratios", frequency_ratios, "")
-    tried = _checked_search_scales("relative_amplitudes", relative_amplitudes)
+    tried = _checked_search_scales("relative_amplitudes", SCAN if relative_amplitudes is None else relative_amplitudes)
     width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
     properties = rocking_properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)

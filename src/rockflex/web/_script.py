@@ -246,12 +246,6 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
-    if based and entry.kind in ("properties", "block"):
-        return [
-            *lines,
-            "from dataclasses import replace",
-            f"structure = replace(structure, {', '.join(f'{name}={code}' for name, code in based.items())})",
-        ]
     wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
     return [*lines, *(f"structure = rf.{wraps[name]}(structure, {code})" for name, code in based.items())]
 

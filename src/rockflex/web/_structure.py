@@ -20,7 +20,7 @@ from rockflex.structure._ground import Ground
 from rockflex.structure._outline import StructureOutline, structure_outline
 from rockflex.structure._pivot import Pivot
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Structure, structure_warnings
+from rockflex.structure._structure import Structure, has_shapes, structure_warnings
 from rockflex.structure._uplifted import uplifted_modes
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._structure_tables import MatricesTable, ModesTable, StructureTable
@@ -121,7 +121,7 @@ def build_page_structure(entry: StructureEntry) -> BuiltStructure:
 def _build_structure_from_json(text: str) -> BuiltStructure:
     entry = StructureEntry.model_validate(json.loads(text))
     structure = entry.build()
-    properties = structure if isinstance(structure, RockingProperties) else structure.rocking()
+    properties = structure.rocking()
     return BuiltStructure(structure, properties, structure_outline(properties, structure))
 
 
@@ -160,7 +160,7 @@ def structure_outline_view(entry: StructureEntry, built: BuiltStructure, ground:
     return {
         "kind": entry.kind,
         "heights": outline.heights,
-        "shapes_known": not isinstance(built.structure, RockingProperties),
+        "shapes_known": has_shapes(built.structure),
         "mass": p.m_tot,  # whose weight stands on the base
         "period": 2.0 * np.pi / p.omega[0] if p.n_modes else None,
         "half_width": p.half_width,

@@ -15,6 +15,7 @@ from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response._history import History
 from rockflex.structure._outline import BODY, GROUND, StructureOutline, structure_outline
 from rockflex.structure._rocking import RockingProperties
+from rockflex.structure._structure import has_shapes
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
@@ -91,7 +92,7 @@ def frame_timing(
 def outline_of_response(history: History, structure: Any | None, place: int) -> StructureOutline:
     """Return the outline of the structure of a response, number `place` of those given."""
     p = history.model.properties
-    if p.n_modes and structure is not None and not isinstance(structure, RockingProperties):
+    if p.n_modes and has_shapes(structure):
         _check_structure_of_response(structure, p, place)
     return structure_outline(p, structure)
 

@@ -128,7 +128,7 @@ def alternatives_table(comparison: Comparison, units: UnitSystem) -> ReportTable
     heads += [("M_r", moment.name), (translated("elements"), "")]
     rows: list[Sequence[ReportCell]] = []
     for name, structure in zip(comparison.names, comparison.structures, strict=True):
-        p: RockingProperties = structure if isinstance(structure, RockingProperties) else structure.rocking()
+        p: RockingProperties = structure.rocking()
         rows.append(
             [
                 ReportCell(name),

@@ -156,13 +156,15 @@ def title_of_several_text(what: str, n: int) -> str:
 
 def structure_kind_text(structure: Any) -> str:
     """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
-    if isinstance(structure, RockingProperties):
-        return translated("Structure given by its rocking properties" if structure.n_modes else "Rigid block")
     around: list[str] = []
     while hasattr(structure, "structure"):  # restrained or eccentric
         around.append(translated(_class_name_in_words(structure).lower()))
         structure = structure.structure
-    return ", ".join([translated(_class_name_in_words(structure)), *around])
+    if isinstance(structure, RockingProperties):
+        kind = translated("Structure given by its rocking properties" if structure.n_modes else "Rigid block")
+    else:
+        kind = translated(_class_name_in_words(structure))
+    return ", ".join([kind, *around])
 
 
 def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:
@@ -434,6 +436,7 @@ def _element_table_row(
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
     name, properties, state = describe_element(element, units)
+    broke = elongation >= element.breaks_at
     return [
         ReportCell(f"{place + 1} {name}"),
         ReportCell(element.where_in(units.of("length")))
@@ -442,7 +445,9 @@ def _element_table_row(
         ReportCell(properties),
         value_cell(force, f"max_element_force_{place + 1}", units.of("force").size),
         value_cell(elongation, f"max_element_elongation_{place + 1}", units.of("displacement").size),
-        ReportCell(state[yielded], None, "", yielded and element.prestressed),
+        ReportCell(
+            translated("broke") if broke else state[yielded], None, "", broke or (yielded and element.prestressed)
+        ),
     ]
 
 

@@ -122,7 +122,7 @@ def _common_rocking_properties(structure: Any, histories: tuple[History, ...]) -
         whole = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
     else:
         structure_warnings(structure)  # raises if it is no structure
-        whole = structure if isinstance(structure, RockingProperties) else structure.rocking()
+        whole: RockingProperties = structure.rocking()
     for history in histories:
         ran = history.model.properties
         modes = min(ran.n_modes, whole.n_modes)

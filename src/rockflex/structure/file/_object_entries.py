@@ -68,7 +68,6 @@ def _kind_made(tables: Mapping[str, Any], table: dict[str, Any]) -> str:
 
 def _block_of_properties(given: dict[str, Any]) -> dict[str, float]:
     half, height, mass = given["half_width"], given["l0r"] / given["m_tot"], given["m_tot"]
-    diagonal = math.hypot(half, height)
-    if not math.isclose(given["i_theta"], 4.0 / 3.0 * mass * diagonal**2, rel_tol=1e-9):
+    if not math.isclose(given["i_theta"], 4.0 / 3.0 * mass * (half**2 + height**2), rel_tol=1e-9):
         raise ValueError("a body without modes that is no homogeneous block")
-    return {"slenderness": math.atan2(half, height), "half_diagonal": diagonal, "mass": mass}
+    return {"width": 2.0 * half, "height": 2.0 * height, "mass": mass}

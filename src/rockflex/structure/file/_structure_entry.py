@@ -16,7 +16,7 @@ from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, Structure
+from rockflex.structure._structure import Eccentric, Restrained, Structure, has_shapes
 from rockflex.structure._yielding_stories import YieldingStories
 from rockflex.structure.file._element_tables import ELEMENT_NAMES, AnyElementTable
 from rockflex.structure.file._structure_tables import STRUCTURES, Built, StructureTable
@@ -150,8 +150,7 @@ class StructureEntry(_OfKinds):
         """
         if not self.elements:
             return built
-        known = isinstance(built, RockingProperties)
-        alone = built if known else built.rocking(1)
+        alone = built.rocking(1 if has_shapes(built) else None)
         elements: list[BaseElement] = []
         for place, table in enumerate(self.elements):
             heading, row = f"[[elements]] no. {place + 1}", f"elements.{place}"
@@ -164,7 +163,9 @@ class StructureEntry(_OfKinds):
             except InputError as error:  # it is outside the base, or at no floor
                 name = error.field if error.field in PLACE else "position"
                 raise InputError(str(error), place=heading, field=f"{row}.{name}") from error
-        return replace(built, elements=elements) if known else Restrained(built, elements)
+        return (
+            replace(built, elements=elements) if isinstance(built, RockingProperties) else Restrained(built, elements)
+        )
 
     def moved(self, path: Callable[[str], str]) -> Self:
         """Return the same structure with the paths of its files from another folder."""

@@ -31,7 +31,7 @@ export function measures(structure, view, kinds) {
   const [B, H, T] = [view.half_width, view.heights.at(-1), view.period];
   const into = (patch) => ({ ...clone(structure), [kind]: { ...values, ...patch } });
   const scaled = (names, factor) => Object.fromEntries(names.filter((name) => name in values).map((name) => [name, times(values[name], factor)]));
-  const block = (half, tall) => into({ slenderness: Number(Math.atan2(half, tall / 2).toPrecision(6)), half_diagonal: Number(Math.hypot(half, tall / 2).toPrecision(6)) });
+  const block = (half, height) => ({ ...clone(structure), block: { mass: values.mass, width: 2 * half, height } });
   const found = {};
   if (kind === "block") {
     found.B = { value: B, set: (v) => block(v, H) };

@@ -33,7 +33,7 @@ const DEFAULTS = {
     omega: [6.2832], effective_mass: [175906], effective_height: [10.54], top_ordinate: [1.2517],
     i_theta: 20066620, l0r: 1800000, m_tot: 240000, half_width: 1.054, zeta: 0.02,
   },
-  block: { slenderness: 0.2, half_diagonal: 3 },
+  block: { width: 0.6, height: 2, mass: 250 },
 };
 
 // Tables nested in that of a structure, by name.
