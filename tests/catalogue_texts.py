@@ -3,6 +3,7 @@
 import ast
 import re
 from functools import cache
+from typing import get_args
 
 from jinja2.ext import extract_from_ast
 
@@ -24,6 +25,7 @@ from rockflex.report.run._sheet import TEMPLATES
 from rockflex.response._comparison import STATISTICS
 from rockflex.response._limit_checks import KINDS, SOURCES
 from rockflex.response._outputs import COMPARED_DEMANDS, DEMANDS_OF_SET, HISTORY, OUTPUTS
+from rockflex.structure._elements import BaseElement
 from rockflex.structure._law_bars import BARS
 
 SOURCE = TEMPLATES.parents[2]
@@ -76,6 +78,7 @@ def labels():
     yield from (text for name, (_, words, _) in _AXES.items() for text in (words, name.replace("_", " ")))
     yield from (*_ELEMENT_NAMES.values(), *(label for *_, label in LINES.values()))
     yield from (re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", bar.__name__).lower() for bar in BARS.values())
+    yield from (state for each in get_args(BaseElement) for state in each.states)
     yield from texts_of_answers()
 
 

@@ -143,8 +143,8 @@ class Response(HtmlTable, Value):
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
-    `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
-    `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
+    `element_elongation`, `element_energy`, `element_state`, `slip`, `slip_velocity`, `heave`, `edge_uplift`,
+    `spring_force`, `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
     `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`,
     `to_matlab()`, `to_netcdf()`, `at()`, `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`;
@@ -265,6 +265,7 @@ class Response(HtmlTable, Value):
     element_force = _OfHistory[Array]()
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
+    element_state = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()

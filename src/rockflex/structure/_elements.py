@@ -52,6 +52,7 @@ class Tendon(Attachment):
     """
 
     title: ClassVar[str] = "Tendon"
+    symbol: ClassVar[str] = "tendons"
 
     initial_force: Annotated[
         float, Described("the force while the base stands on the ground", "N", rule="zero or positive")
@@ -136,6 +137,7 @@ class YieldingDissipator(Attachment):
     """
 
     title: ClassVar[str] = "Yielding dissipator"
+    symbol: ClassVar[str] = "fuse"
 
     stiffness: Annotated[float, Described("the elastic stiffness", "N/m", rule="positive")]
     yield_force: Annotated[float, Described("the force at which the fuse yields", "N", rule="positive")]
@@ -186,6 +188,8 @@ class ViscousDamper(Attachment):
     """
 
     title: ClassVar[str] = "Viscous damper"
+    symbol: ClassVar[str] = "damper"
+    states: ClassVar[tuple[str, str, str]] = ("", "", "")
 
     coefficient: Annotated[float, Described("the force over the velocity", "N s/m", rule="zero or positive")]
     position: Position = 0.0
@@ -211,6 +215,8 @@ class FrictionDamper(Attachment):
     """
 
     title: ClassVar[str] = "Friction damper"
+    symbol: ClassVar[str] = "friction"
+    states: ClassVar[tuple[str, str, str]] = ("held", "sliding", "")
 
     force: Annotated[float, Described("the force at which the damper slides", "N", rule="zero or positive")]
     position: Position = 0.0

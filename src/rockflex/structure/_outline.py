@@ -8,8 +8,9 @@ import numpy as np
 
 from rockflex.foundation.arrays import Array
 from rockflex.structure._analysis import ModalProperties
-from rockflex.structure._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.structure._elements import BaseElement, Tendon
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
+from rockflex.structure._leaning import Leaning
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import ModifiedStructure, Structure
 from rockflex.structure._towers import CantileverWithTipMass
@@ -46,12 +47,6 @@ SYMBOLS: dict[str, Symbol] = {
 
 A spring is 1 wide to either side. The others are named after their colours on the page.
 """
-_SYMBOL_OF: dict[type[BaseElement], str] = {
-    Tendon: "tendons",
-    YieldingDissipator: "fuse",
-    ViscousDamper: "damper",
-    FrictionDamper: "friction",
-}
 
 
 class Stroke(NamedTuple):
@@ -80,6 +75,9 @@ class StructureOutline:
         Lines of the structure, from the back to the front; the last is the base.
     elements
         The symbol of each element, and both ends as the points of a stroke, shape (2, 3); the ground comes first.
+    masses
+        Height in m and mass in kg of what is concentrated on the structure, without the base and what leans; none where
+        the mass is distributed or not known.
     """
 
     kind: Kind
@@ -89,6 +87,7 @@ class StructureOutline:
     right: float
     strokes: tuple[Stroke, ...]
     elements: tuple[tuple[str, Array], ...]
+    masses: tuple[tuple[float, float], ...] = ()
 
     @property
     def top(self) -> float:
@@ -121,14 +120,40 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     strokes = (*_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
-    symbols = [_SYMBOL_OF.get(type(each), "law") for each in p.elements]
-    held = tuple(zip(symbols, ends, strict=True))
-    return StructureOutline(kind, heights, shapes, left, right, strokes, held)
+    held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
+    return StructureOutline(kind, heights, shapes, left, right, strokes, held, _concentrated_masses(kind, p, structure))
+
+
+def unmodified_structure(structure: Any) -> Any:
+    """Return the structure that restrained, eccentric, leaning and yielding ones change."""
+    while isinstance(structure, ModifiedStructure):
+        structure = structure.structure
+    return structure
+
+
+def _concentrated_masses(kind: Kind, p: RockingProperties, structure: Any) -> tuple[tuple[float, float], ...]:
+    if kind == "block":
+        return ((p.l0r / p.m_tot, p.m_tot),)
+    inner = unmodified_structure(structure)
+    bodies = getattr(inner, "lumped_masses", None)
+    if bodies is not None:
+        return tuple(zip(map(float, bodies.heights), map(float, bodies.masses), strict=True))
+    if hasattr(inner, "tip_mass"):
+        return ((inner.height, inner.tip_mass),)
+    if kind != "frame" or p.floors is None or p.base_mass is None:
+        return ()
+    moving = p.floors.force @ (1.0 / p.omega**2)  # all of it if all modes are there
+    if not math.isclose(float(moving.sum()), p.horizontal_mass - p.base_mass, rel_tol=1e-6):
+        return ()
+    while isinstance(structure, ModifiedStructure):
+        if isinstance(structure, Leaning):
+            moving = moving - structure.masses
+        structure = structure.structure
+    return tuple(zip(p.floors.heights.tolist(), moving.tolist(), strict=True))
 
 
 def _outline_kind(structure: Any) -> Kind:
-    while isinstance(structure, ModifiedStructure):
-        structure = structure.structure
+    structure = unmodified_structure(structure)
     if isinstance(structure, CantileverWithTipMass):
         return "mast"
     return "frame" if isinstance(structure, Frame | FishBone | LumpedStructure) else "column"

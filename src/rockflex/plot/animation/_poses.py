@@ -202,6 +202,25 @@ def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Arra
     )
 
 
+def resting_poses(outline: StructureOutline, springs: Array) -> StructurePoses:
+    """Return the pose of a structure that stands on the ground or on unloaded springs, as a single frame."""
+    still, never = np.zeros(1), np.zeros(1, bool)
+    return StructurePoses(
+        outline=outline,
+        springs=springs,
+        rotation=still,
+        slip=still,
+        heave=still,
+        sway=np.zeros((1, outline.heights.size)),
+        rise=np.zeros((1, 2)),
+        uplifted=never,
+        sliding=never,
+        impact=never,
+        lifts=True,
+        sprung=springs.size > 0,
+    )
+
+
 def default_amplification(curves: Sequence[ResponseCurve], poses: Sequence[StructurePoses]) -> float:
     """Return the largest round number for which no structure is drawn to move by more than 0.15 of its size.
 
