@@ -30,7 +30,6 @@ from rockflex.plot.animation._poses import (
 from rockflex.plot.animation._scene import (
     DARK_RED,
     EDGE,
-    ELEMENT_COLORS,
     MIN_SPRING,
     SPRING_FREE,
     MetresToStagePoints,
@@ -43,9 +42,15 @@ from rockflex.plot.animation._scene import (
 from rockflex.response._response import Response
 from rockflex.structure._attachment import Attachment, element_parameters
 from rockflex.structure._ground import Ground
-from rockflex.structure._outline import BODY, GROUND, StructureOutline, structure_outline, unmodified_structure
+from rockflex.structure._outline import (
+    BODY,
+    ELEMENT_COLORS,
+    GROUND,
+    StructureOutline,
+    structure_outline,
+)
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import is_structure
+from rockflex.structure._structure import ModifiedStructure, is_structure
 
 _INK = "#404040"
 _LETTERS = 8.0  # points, in a figure with letters of 9
@@ -188,7 +193,9 @@ def _instant(curve: ResponseCurve, at: float | None) -> float:
 
 
 def _title(structure: Any, p: RockingProperties) -> str:
-    inner = unmodified_structure(structure)
+    inner = structure
+    while isinstance(inner, ModifiedStructure):
+        inner = inner.structure
     name = translated(getattr(inner, "title", "") or type(inner).__name__) if p.n_modes else translated("Rigid block")
     return f"{name}, $T_1$ = {short_number(2.0 * np.pi / float(p.omega[0]))} s" if p.n_modes else name
 

@@ -12,7 +12,7 @@ import numpy as np
 from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.errors import InputError, MissingQuantityError
 from rockflex.foundation.files import checked_file_path
-from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.html import HtmlTable, curve_svg, svg_picture
 from rockflex.foundation.language import translated
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.units import UnitSystem
@@ -304,7 +304,17 @@ class Response(HtmlTable, Value):
 
     def _shown_as(self) -> dict[str, Any]:
         warned = {"warnings": " ".join(self.warnings)} if self.warnings else {}
-        return {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")} | warned
+        peaks = {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")}
+        return self._drawn_history() | peaks | warned
+
+    def _drawn_history(self) -> dict[str, Any]:
+        """The rotation over time as a small curve, or the displacement of the top if the base does not lift."""
+        if self.history is None:
+            return {}
+        name = "rotation" if self.max_rotation > 0.0 else "top_displacement"
+        time = self.history.time
+        drawn = curve_svg(time, getattr(self.history, name))
+        return {f"{name}, {time[0]:g} to {time[-1]:.4g} s": svg_picture(drawn, name)}
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._elements import BaseElement, Tendon, base_element_tuple
+from rockflex.structure._outline import DrawnStructure, Kind, Masses
 from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._rocking import RockingProperties
 
@@ -28,7 +29,7 @@ class Structure(Protocol):
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties: ...
 
 
-class AssembledStructure(ABC):
+class AssembledStructure(DrawnStructure, ABC):
     """A structure whose description is turned into another one, which has its modes and rocking properties."""
 
     @property
@@ -61,10 +62,16 @@ class AssembledStructure(ABC):
         return ()
 
 
-class ModifiedStructure:
+class ModifiedStructure(DrawnStructure):
     """A structure that has the modes of another one, and some other properties."""
 
     structure: Structure
+
+    def outline_kind(self) -> Kind:
+        return self.structure.outline_kind() if isinstance(self.structure, DrawnStructure) else "column"
+
+    def concentrated_masses(self) -> Masses:
+        return self.structure.concentrated_masses() if isinstance(self.structure, DrawnStructure) else ()
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
         """Return the first `n_modes` modes on a fixed base (default: all)."""
@@ -94,7 +101,7 @@ def is_structure(given: object) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class ModalStructure(Value):
+class ModalStructure(DrawnStructure, Value):
     """A structure given by its modes, as returned by `from_matrices` and `from_modes`.
 
     Attributes

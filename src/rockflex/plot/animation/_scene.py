@@ -18,11 +18,10 @@ from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
-from rockflex.structure._outline import SYMBOLS, Stroke
+from rockflex.structure._outline import ELEMENT_COLORS, SYMBOLS, Stroke
 
 Polyline = Sequence[tuple[float, float]]
 
-ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
 SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
 DARK_RED = "#b3261e"
 _MAX_WIDE_SPRINGS = 4
