@@ -76,6 +76,7 @@ def labels():
     yield from (text for name, (_, words, _) in _AXES.items() for text in (words, name.replace("_", " ")))
     yield from (label for *_, label in LINES.values())
     yield from (object.__new__(each).words for each in (ELEMENTS | BARS).values())
+    yield from (state for each in (ELEMENTS | BARS).values() for state in each.states)
     yield from texts_of_answers()
 
 

@@ -90,6 +90,7 @@ from .plot import plot_selection as plot_selection
 from .plot import plot_set as plot_set
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
+from .plot import plot_structure as plot_structure
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure

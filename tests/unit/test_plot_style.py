@@ -162,6 +162,7 @@ ARGUMENTS = {
     "plot_set": lambda: (record_set(),),
     "plot_spread": lambda: spread(),
     "plot_stripes": lambda: (stripes(),),
+    "plot_structure": lambda: (wall(), None, rf.simulate(wall(), RECORD, "2DOF-S")),
     "plot_tower": lambda: (tower(),),
     "plot_yielding": lambda: (yielding(),),
 }

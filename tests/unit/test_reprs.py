@@ -1,5 +1,7 @@
 """What values say of themselves: a line of text, and a short table in a notebook."""
 
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -109,6 +111,55 @@ def test_a_response_with_a_name_that_is_markup():
     assert (rows["motion"], rows["status"]) == ("<b>&", response.status)
     assert rows["max_rotation"] == f"{response.max_rotation:.5g}"
     assert "<b>" not in response._repr_html_()
+
+
+KINDS = [
+    FRAME,
+    rf.Restrained(rf.Leaning(FRAME, 1e3), [rf.Tendon(2e5, 8e6), rf.FrictionDamper(5e4, position=0.1)]),
+    FRAME.lumped,
+    rf.CantileverWithTipMass(
+        height=12.0, tip_mass=5e5, bending_stiffness=4e10, base_mass=1e5, half_width=1.5, damping_ratio=0.03
+    ),
+    rf.from_matrices([20e3], [[4e6]], [3.0], base_mass=2e4, half_width=0.6, damping_ratio=0.02),
+]
+
+
+@pytest.mark.parametrize("structure", KINDS, ids=lambda structure: type(structure).__name__)
+def test_a_structure_is_a_drawing_and_five_numbers(structure):
+    p = structure.rocking()
+    assert list(cells(structure)) == ["", "T₁", "m*₁", "h*₁", "I_θ", "M_r"]
+    assert cells(structure)["I_θ"] == f"{p.i_theta:.4g} kg m²"
+    (drawn,) = ET.fromstring(structure._repr_html_()).iter("svg")
+    width, height = (float(drawn.get(name)) for name in ("width", "height"))
+    lines = [line.get("points") for line in drawn.iter("polyline")]
+    points = [tuple(map(float, point.split(","))) for line in lines for point in line.split()]
+    assert all(-1.0 <= x <= width + 1.0 and -1.0 <= y <= height + 1.0 for x, y in points)
+    assert len(lines) > 2 + 2 * len(p.elements)
+
+
+def test_notebooks_show_structures_and_responses_without_matplotlib():
+    code = (
+        "import sys; import rockflex as rf; frame = rf.Frame(2, 3.0, 4e4, 4e4, 1.0, 0.5, 8.0, 0.02); "
+        "frame._repr_html_(); rf.simulate(frame, rf.one_sine_pulse(3.0, 0.8))._repr_html_(); "
+        "sys.exit('matplotlib' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_response_has_a_small_history_if_it_kept_one():
+    rocks = rf.simulate(FRAME, rf.one_sine_pulse(4.0, 1.0), "2DOF-S")
+    stands = rf.simulate(FRAME, rf.one_sine_pulse(0.1, 1.0), "2DOF-S")
+    for response, name in ((rocks, "rotation"), (stands, "top_displacement")):
+        (drawn,) = ET.fromstring(response._repr_html_()).iter("svg")
+        points = [float(point.split(",")[1]) for point in drawn.find("polyline").get("points").split()]
+        values = getattr(response, name)
+        middle = float(drawn.get("height")) / 2.0
+        scale = (middle - 2.0) / abs(values).max()
+        assert min(points) == pytest.approx(middle - scale * values.max(), abs=0.06)
+        assert max(points) == pytest.approx(middle - scale * values.min(), abs=0.06)
+        assert any(label.startswith(f"{name}, ") for label in cells(response))
+    peaks = rf.simulate(FRAME, rf.one_sine_pulse(4.0, 1.0), "2DOF-S", output="peaks")
+    assert "svg" not in peaks._repr_html_()
 
 
 def test_long_texts_are_shortened():

@@ -202,9 +202,9 @@ def _write_modes(
 ) -> None:
     import pandas as pd
 
-    from rockflex.structure._structure import has_shapes
+    from rockflex.structure._outline import has_shapes
 
-    built = loaded.built
+    built: Any = loaded.built
     drawn = has_shapes(built)
     with output.staged_output_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.

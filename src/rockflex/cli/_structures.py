@@ -15,8 +15,9 @@ from rockflex.foundation.units import UnitSystem
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._frames import Frame
+from rockflex.structure._outline import has_shapes, innermost_structure
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, has_shapes, innermost_structure, structure_warnings
+from rockflex.structure._structure import Eccentric, structure_warnings
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import KINDS

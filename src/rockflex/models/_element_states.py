@@ -1,6 +1,7 @@
 """The elements at the states of a history: tensions, plastic stretches and energies."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex.foundation.arrays import Array
 from rockflex.models._elements import friction_damper_shares, is_held_by_dampers
@@ -46,6 +47,20 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
                 kept = np.nan if each.broken(branch) else vector[:, memory]
                 found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
             memory += each.n_internal
+    return found
+
+
+def element_states(model: RockingModel, states: Array) -> NDArray[np.int8]:
+    """Return the state of every element at the states of a history, shape (n, E).
+
+    1 as it yields or slides, 2 if it is broken, otherwise 0. Stories that yield follow the elements.
+    """
+    found = np.zeros((states.shape[0], len(model.elements)), np.int8)
+    if not model.elements:
+        return found
+    for chosen, key, _ in states_by_phase(model, states, acting_side(states)):
+        for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
+            found[chosen, place] = 2 if each.broken(branch) else each.direction(branch) != 0
     return found
 
 

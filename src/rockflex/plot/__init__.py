@@ -2,6 +2,7 @@
 
 from rockflex.plot._comparison import plot_comparison
 from rockflex.plot._design import plot_design, plot_design_search
+from rockflex.plot._drawing import plot_structure
 from rockflex.plot._figures import figure_style, save_figure
 from rockflex.plot._fragility import plot_clouds, plot_fragility, plot_ida, plot_stripes
 from rockflex.plot._history import plot_energy, plot_footing, plot_history, plot_spread
@@ -45,6 +46,7 @@ __all__ = [
     "plot_set",
     "plot_spread",
     "plot_stripes",
+    "plot_structure",
     "plot_tower",
     "plot_yielding",
     "save_figure",

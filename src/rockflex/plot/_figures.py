@@ -342,6 +342,12 @@ def is_narrow() -> bool:
     return asked is not None and asked[0] < _NARROW
 
 
+def is_height_given() -> bool:
+    """Whether the caller has asked for a height of the figure."""
+    asked = _SIZE.get()
+    return asked is not None and asked[1] is not None
+
+
 def scaled_font_size(size: float) -> float:
     """Size of letters in points that is `size` in a figure with letters of 9 points."""
     return size * rcParams["font.size"] / _FONT
@@ -479,25 +485,25 @@ def _wrap_figure_texts(figure: Figure) -> None:
         for axes in figure.axes:
             left, right = axes.bbox.x0, axes.bbox.x1
             middle = min(left + right, 2.0 * figure.bbox.width - left - right) - _EDGE  # to the nearer edge, twice
-            _break_text(axes.title, middle)
-            _break_text(axes.xaxis.label, middle)
-            _break_text(axes._left_title, across - left)  # pyright: ignore
-            _break_text(axes._right_title, right - _EDGE)  # pyright: ignore
-            _break_text(axes.yaxis.label, axes.bbox.height, turned=True)
+            break_text(axes.title, middle)
+            break_text(axes.xaxis.label, middle)
+            break_text(axes._left_title, across - left)  # pyright: ignore
+            break_text(axes._right_title, right - _EDGE)  # pyright: ignore
+            break_text(axes.yaxis.label, axes.bbox.height, turned=True)
         for each in (figure._suptitle, figure._supxlabel, *(key.get_title() for key in figure.legends)):  # pyright: ignore
-            _break_text(each, across)
+            break_text(each, across)
         for key in figure.legends:
             widest = max((text.get_window_extent().width for text in key.get_texts()), default=0.0)
             for text in key.get_texts():
-                _break_text(text, widest - max(key.get_window_extent().width - across, 0.0))
-        _break_text(figure._supylabel, up, turned=True)  # pyright: ignore
+                break_text(text, widest - max(key.get_window_extent().width - across, 0.0))
+        break_text(figure._supylabel, up, turned=True)  # pyright: ignore
 
 
 _EDGE = 4.0  # dots that stay free at the edge of a figure
 _WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")  # with mathematics in one piece
 
 
-def _break_text(text: Text | None, room: float, *, turned: bool = False) -> None:
+def break_text(text: Text | None, room: float, *, turned: bool = False) -> None:
     """Break a text between its words, so that it is no longer than `room` dots."""
     if text is None:
         return

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.checks import checked_finite_rows
 from rockflex.foundation.errors import MissingQuantityError
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.values import Value
-from rockflex.models._element_states import element_forces
+from rockflex.models._element_states import element_forces, element_states
 from rockflex.models._reactions import spring_forces
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
@@ -305,6 +305,14 @@ class History(Value):
         was at rest; as in `Attachment` for others.
         """
         return self.model.elongations_at(self.states)[:, : len(self.model.properties.elements)]
+
+    @property
+    def element_state(self) -> NDArray[np.int8]:
+        """State of each element: 0 elastic or held, 1 as it yields or slides, 2 broken, shape (n_states, E + S).
+
+        S stories that yield follow the elements.
+        """
+        return element_states(self.model, self.states)
 
     @property
     def vertical_ground_acceleration(self) -> Array:

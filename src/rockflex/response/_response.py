@@ -12,7 +12,7 @@ import numpy as np
 from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.errors import InputError, MissingQuantityError
 from rockflex.foundation.files import checked_file_path
-from rockflex.foundation.html import HtmlTable
+from rockflex.foundation.html import HtmlTable, curve_svg, svg_picture
 from rockflex.foundation.language import translated
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.units import UnitSystem
@@ -143,8 +143,8 @@ class Response(HtmlTable, Value):
     `modal_velocity`, `modal_acceleration`, `rotation`, `rotation_velocity`, `rotation_acceleration`, `yielding`,
     `top_displacement`, `total_top_displacement`, `base_moment`, `base_shear`, `uplift_times`, `impact_times`,
     `story_drift`, `story_shear`, `floor_acceleration`, `total_floor_displacement`, `element_force`,
-    `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
-    `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
+    `element_elongation`, `element_energy`, `element_state`, `slip`, `slip_velocity`, `heave`, `edge_uplift`,
+    `spring_force`, `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
     `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`,
     `to_matlab()`, `to_netcdf()`, `at()`, `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`;
@@ -265,6 +265,7 @@ class Response(HtmlTable, Value):
     element_force = _OfHistory[Array]()
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
+    element_state = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()
@@ -303,7 +304,17 @@ class Response(HtmlTable, Value):
 
     def _shown_as(self) -> dict[str, Any]:
         warned = {"warnings": " ".join(self.warnings)} if self.warnings else {}
-        return {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")} | warned
+        peaks = {name: value for name, value in self.peaks().items() if not name.startswith("time_of_")}
+        return self._drawn_history() | peaks | warned
+
+    def _drawn_history(self) -> dict[str, Any]:
+        """The rotation over time as a small curve, or the displacement of the top if the base does not lift."""
+        if self.history is None:
+            return {}
+        name = "rotation" if self.max_rotation > 0.0 else "top_displacement"
+        time = self.history.time
+        drawn = curve_svg(time, getattr(self.history, name))
+        return {f"{name}, {time[0]:g} to {time[-1]:.4g} s": svg_picture(drawn, name)}
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -1,10 +1,11 @@
 """Where an element acts: under the base, between floors, or from a height to the ground; and stories that yield."""
 
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from rockflex.foundation.checks import real_or_nan
-from rockflex.foundation.descriptions import Described, described
+from rockflex.foundation.descriptions import Described, described, described_arguments
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import short_number
@@ -124,6 +125,13 @@ class Attachment:
         axis, place = ("x", self.position) if self.height is None else ("z", self.height)
         return f"{axis} = {short_number(place / length.size)} {length.name}"
 
+    @property
+    def main_numbers(self) -> list[tuple[float, str]]:
+        """The first two numbers that describe what it does, each with its SI unit: a tendon's force and stiffness."""
+        units = _units_of_numbers(type(self))
+        given = [(value, unit) for name, unit in units.items() if (value := getattr(self, name)) is not None]
+        return [(float(value), unit) for value, unit in given if isinstance(value, int | float)][:2]
+
     def arm(self, pivot: float, side: int) -> float:
         """Return the distance in m from a pivot on a side, itself at `pivot` from the axis; zero if attached."""
         return 0.0 if self.attached else pivot - side * self.position
@@ -131,6 +139,13 @@ class Attachment:
     def __repr__(self) -> str:
         given = element_parameters(self).items()
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in given)})"
+
+
+@cache
+def _units_of_numbers(kind: type[Attachment]) -> dict[str, str]:
+    """Return the units of the numbers of a kind of element by their names, without those of its place."""
+    known = described_arguments(kind).items()
+    return {name: told.unit for name, told in known if told.unit and name not in PLACE}
 
 
 def element_parameters(element: Attachment) -> dict[str, Any]:

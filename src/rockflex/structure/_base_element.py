@@ -16,7 +16,8 @@ class BaseElement(Attachment, ABC):
     Those who hold, run, draw or report an element ask it, whatever its class is. What is not abstract has a default.
     """
 
-    drawn_as: ClassVar[str] = "law"  # its symbol in a drawing, of `SYMBOLS`
+    symbol: ClassVar[str] = "law"  # in a drawing, one of `SYMBOLS`
+    states: ClassVar[tuple[str, str, str]] = ("elastic", "yielding", "broken")  # in a drawing, by what it does
     prestressed: ClassVar[bool] = False  # whether it is a tendon, whose prestress a run reports
     rate_dependent: ClassVar[bool] = False  # whether its force follows the velocity
     fuse: ClassVar[bool] = False  # whether it is a bar that yields over a length of its own, so that it has a strain

@@ -29,6 +29,7 @@ from rockflex.structure._beam_sections import (
     lumped_masses_on_beam,
 )
 from rockflex.structure._cross_section import Section, checked_section, value_from_section
+from rockflex.structure._outline import Masses
 from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
@@ -180,6 +181,10 @@ class Beam(AssembledStructure, Value):
     @property
     def _elements(self) -> int:
         return max(_N_ELEMENTS, self.n_modes) if self.n_elements is None else self.n_elements
+
+    def concentrated_masses(self) -> Masses:
+        bodies = self.lumped_masses
+        return () if bodies is None else tuple(zip(bodies.heights.tolist(), bodies.masses.tolist(), strict=True))
 
     def _check_method(self) -> None:
         if not is_one_of(self.method, ("fe", "ritz")):

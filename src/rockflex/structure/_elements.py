@@ -54,7 +54,7 @@ class Tendon(BaseElement):
     """
 
     title: ClassVar[str] = "Tendon"
-    drawn_as: ClassVar[str] = "tendons"
+    symbol: ClassVar[str] = "tendons"
     prestressed: ClassVar[bool] = True
 
     initial_force: Annotated[
@@ -239,7 +239,7 @@ class YieldingDissipator(BaseElement):
     """
 
     title: ClassVar[str] = "Yielding dissipator"
-    drawn_as: ClassVar[str] = "fuse"
+    symbol: ClassVar[str] = "fuse"
     fuse: ClassVar[bool] = True
 
     stiffness: Annotated[float, Described("the elastic stiffness", "N/m", rule="positive")]
@@ -353,7 +353,8 @@ class ViscousDamper(BaseElement):
     """
 
     title: ClassVar[str] = "Viscous damper"
-    drawn_as: ClassVar[str] = "damper"
+    symbol: ClassVar[str] = "damper"
+    states: ClassVar[tuple[str, str, str]] = ("", "", "")
     rate_dependent: ClassVar[bool] = True
 
     coefficient: Annotated[float, Described("the force over the velocity", "N s/m", rule="zero or positive")]
@@ -409,7 +410,8 @@ class FrictionDamper(BaseElement):
     """
 
     title: ClassVar[str] = "Friction damper"
-    drawn_as: ClassVar[str] = "friction"
+    symbol: ClassVar[str] = "friction"
+    states: ClassVar[tuple[str, str, str]] = ("held", "sliding", "")
 
     force: Annotated[float, Described("the force at which the damper slides", "N", rule="zero or positive")]
     position: Position = 0.0

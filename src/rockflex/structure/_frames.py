@@ -26,6 +26,7 @@ from rockflex.foundation.schema import DAMPING_RATIOS, BaseMass, FrameSchema, Ha
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.structure._analysis import ModalProperties, modal_properties
+from rockflex.structure._outline import DrawnStructure, Kind, Masses
 from rockflex.structure._participation import rocking_properties
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure
@@ -36,7 +37,7 @@ MAX_ASPECT_RATIO = 1e4  # h*_1/B from which the base hardly adds to the inertia,
 
 @described
 @dataclass(frozen=True, eq=False, init=False)
-class LumpedStructure(Value):
+class LumpedStructure(DrawnStructure, Value):
     """Any linear structure with N masses above a rigid base that can rock.
 
     Its degrees of freedom are the horizontal displacements of the masses relative to the base (Silva & Stojadinović
@@ -117,6 +118,13 @@ class LumpedStructure(Value):
             half_width=half_width,
             damping_ratio=checked_damping_ratios("damping_ratio", damping_ratio, h.size),
         )
+
+    def outline_kind(self) -> Kind:
+        return "frame"
+
+    def concentrated_masses(self) -> Masses:
+        by_floor = self.masses if self.masses.ndim == 1 else self.masses.sum(axis=1)
+        return tuple(zip(self.heights.tolist(), by_floor.tolist(), strict=True))
 
     @property
     def height(self) -> float:
@@ -266,6 +274,12 @@ class FishBone(AssembledStructure, Value):
         )
         vars(self).update(damping_ratio=self.lumped.damping_ratio)
 
+    def outline_kind(self) -> Kind:
+        return "frame"
+
+    def concentrated_masses(self) -> Masses:
+        return self.lumped.concentrated_masses()
+
     @property
     def height(self) -> float:
         """Height of the top floor above the base in m."""
@@ -374,6 +388,12 @@ class Frame(FrameSchema, AssembledStructure):
 
     def __post_init__(self) -> None:
         """No value says anything of another one."""
+
+    def outline_kind(self) -> Kind:
+        return "frame"
+
+    def concentrated_masses(self) -> Masses:
+        return self.lumped.concentrated_masses()
 
     @property
     def height(self) -> float:

@@ -1,4 +1,4 @@
-"""How a structure looks: its lines and what holds it, at rest, and how each of their points moves."""
+"""How a structure looks: its lines and what holds it, at rest, how each of their points moves, and a small drawing."""
 
 import math
 from dataclasses import dataclass
@@ -7,12 +7,11 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.html import html_table, svg_picture
+from rockflex.foundation.number_format import rounded_number, unit_with_prefix
 from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._base_element import BaseElement
-from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Structure, has_shapes, innermost_structure
-from rockflex.structure._towers import CantileverWithTipMass
 
 Kind = Literal["block", "frame", "column", "mast"]
 GROUND, UPRIGHT, BODY = 0.0, 1.0, 2.0
@@ -20,6 +19,7 @@ GROUND, UPRIGHT, BODY = 0.0, 1.0, 2.0
 
 MAX_HEIGHTS = 40  # heights of a structure that are drawn, besides the base
 _MAX_THICK_FLOORS = 25
+_HTML_HEIGHT, _HTML_WIDTH, _HTML_EDGE = 170.0, 260.0, 8.0  # pixels of the drawing in a notebook
 _COLUMN, _LEANING, _BRACE = 0.82, 1.8, 0.6  # x over the distance from the axis to the nearer edge
 _MASS, _BRACKET, _MAX_BRACKET, _TENDON, _SUNK = 0.06, 0.16, 0.4, 0.6, 0.02  # lengths over the height
 
@@ -46,6 +46,37 @@ SYMBOLS: dict[str, Symbol] = {
 
 A spring is 1 wide to either side. The others are named after their colours on the page.
 """
+
+ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
+Masses: TypeAlias = tuple[tuple[float, float], ...]
+"""Heights in m and masses in kg, from the bottom to the top."""
+
+
+class DrawnStructure:
+    """A structure that says how it looks; notebooks show it as a small drawing with five of its parameters."""
+
+    def outline_kind(self) -> Kind:
+        """Return what its drawing shows above the base."""
+        return "column"
+
+    def concentrated_masses(self) -> Masses:
+        """Return the masses that it carries at single heights, without the base and what leans."""
+        return ()
+
+    def _repr_html_(self) -> str:
+        return _structure_html(self)
+
+
+def innermost_structure(structure: Any) -> Any:
+    """Return what stands on an eccentric base, is restrained, or is modified in another way."""
+    while hasattr(structure, "structure"):
+        structure = structure.structure
+    return structure
+
+
+def has_shapes(structure: Any) -> bool:
+    """Tell whether the shapes of the modes of a structure are known; its `RockingProperties` have none."""
+    return structure is not None and not isinstance(innermost_structure(structure), RockingProperties)
 
 
 class Stroke(NamedTuple):
@@ -74,6 +105,9 @@ class StructureOutline:
         Lines of the structure, from the back to the front; the last is the base.
     elements
         The symbol of each element, and both ends as the points of a stroke, shape (2, 3); the ground comes first.
+    masses
+        Height in m and mass in kg of what is concentrated on the structure, without the base and what leans; none where
+        the mass is distributed or not known.
     """
 
     kind: Kind
@@ -83,6 +117,7 @@ class StructureOutline:
     right: float
     strokes: tuple[Stroke, ...]
     elements: tuple[tuple[str, Array], ...]
+    masses: Masses = ()
 
     @property
     def top(self) -> float:
@@ -95,7 +130,7 @@ class StructureOutline:
         return max(self.top, self.right - self.left)
 
 
-def structure_outline(p: RockingProperties, structure: Structure | RockingProperties | None) -> StructureOutline:
+def structure_outline(p: RockingProperties, structure: Any | RockingProperties | None) -> StructureOutline:
     """Return the outline of a structure with some properties.
 
     Without the structure itself, floors are drawn where the properties have them, and otherwise a straight line to the
@@ -105,7 +140,8 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
     if not p.n_modes:
         kind: Kind = "block"
     elif has_shapes(structure):
-        kind, modes = _outline_kind(structure), structure.modal()  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
+        modes = structure.modal()  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
+        kind = structure.outline_kind() if isinstance(structure, DrawnStructure) else "column"
     elif p.floors is not None:
         kind = "frame" if p.floors.heights.size > 1 else "mast"
     else:
@@ -115,16 +151,20 @@ def structure_outline(p: RockingProperties, structure: Structure | RockingProper
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     strokes = (*_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
-    symbols = [each.drawn_as for each in p.elements]
-    held = tuple(zip(symbols, ends, strict=True))
-    return StructureOutline(kind, heights, shapes, left, right, strokes, held)
+    held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
+    return StructureOutline(kind, heights, shapes, left, right, strokes, held, _concentrated_masses(kind, p, structure))
 
 
-def _outline_kind(structure: Any) -> Kind:
-    inner = innermost_structure(structure)
-    if isinstance(inner, CantileverWithTipMass):
-        return "mast"
-    return "frame" if isinstance(inner, Frame | FishBone | LumpedStructure) else "column"
+def _concentrated_masses(kind: Kind, p: RockingProperties, structure: Any) -> Masses:
+    if kind == "block":
+        return ((p.l0r / p.m_tot, p.m_tot),)
+    if isinstance(structure, DrawnStructure):
+        return structure.concentrated_masses()
+    if p.floors is None or p.base_mass is None or p.leaning_mass:
+        return ()
+    found = p.floors.force @ (1.0 / p.omega**2)  # all of them if all modes are there
+    whole = math.isclose(float(found.sum()), p.m_tot - p.base_mass, rel_tol=1e-6)
+    return tuple(zip(p.floors.heights.tolist(), found.tolist(), strict=True)) if whole else ()
 
 
 def _heights_and_shapes(p: RockingProperties, modes: ModalProperties | None) -> tuple[Array, Array]:
@@ -178,3 +218,51 @@ def _element_ends(
     if element.prestressed:
         return [(x, -_SUNK * top, GROUND), (x, _TENDON * top, BODY)]
     return [(x, 0.0, GROUND), (x, min(_BRACKET * max(top, right - left), _MAX_BRACKET * top), BODY)]
+
+
+def _structure_html(structure: Any) -> str:
+    """Return the drawing of a structure and T_1, m*_1, h*_1, I_θ and M_r as HTML."""
+    p: RockingProperties = structure.rocking()
+    moment = p.resisting_moment
+    size, unit = unit_with_prefix(moment, "N m")
+    rows = {
+        "": svg_picture(_outline_svg(structure_outline(p, structure)), "structure"),
+        "T₁": f"{rounded_number(2.0 * math.pi / float(p.omega[0]))} s",
+        "m*₁": f"{rounded_number(float(p.effective_mass[0]))} kg",
+        "h*₁": f"{rounded_number(float(p.effective_height[0]))} m",
+        "I_θ": f"{p.i_theta:.4g} kg m²",
+        "M_r": f"{rounded_number(moment / size)} {unit}",
+    }
+    return html_table(type(structure).__name__, rows)
+
+
+def _outline_svg(o: StructureOutline) -> tuple[float, float, list[str]]:
+    """Return width, height and elements of the drawing of a structure."""
+    points = np.concatenate([*(each.points for each in o.strokes), *(ends for _, ends in o.elements)])
+    left, right = float(points[:, 0].min()), float(points[:, 0].max())
+    zoom = min((_HTML_WIDTH - 2.0 * _HTML_EDGE) / (right - left), (_HTML_HEIGHT - 3.0 * _HTML_EDGE) / o.top)
+    width, height = zoom * (right - left) + 4.0 * _HTML_EDGE, zoom * o.top + 3.0 * _HTML_EDGE
+    ground = height - 2.0 * _HTML_EDGE
+
+    def at(x: float, z: float) -> tuple[float, float]:
+        return 2.0 * _HTML_EDGE + zoom * (x - left), ground - zoom * z
+
+    drawn = [_svg_line([(0.0, ground + 3.0), (width, ground + 3.0)], 1.0, "#8c8c8c")]
+    drawn += [
+        _svg_line([at(*point[:2]) for point in each.points], 0.75 * each.width, "currentColor", filled=each.filled)
+        for each in o.strokes
+    ]
+    for symbol, ends in o.elements:
+        start, end = (np.array(at(*point[:2])) for point in ends)
+        along = end - start
+        across = np.array([-along[1], along[0]]) / (float(np.hypot(*along)) or 1.0)
+        for line, thick, filled in SYMBOLS[symbol]:
+            places = [tuple(start + 0.7 * u * across + share * along) for u, share in line]
+            drawn.append(_svg_line(places, max(0.6 * thick, 1.0), ELEMENT_COLORS[symbol], filled=filled))
+    return width, height, drawn
+
+
+def _svg_line(points: list[Any], thick: float, color: str, *, filled: bool = False) -> str:
+    places = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    fill = f'{color}" fill-opacity="0.15' if filled else "none"
+    return f'<polyline points="{places}" fill="{fill}" stroke="{color}" stroke-width="{thick:g}"/>'

@@ -15,6 +15,7 @@ from rockflex.foundation.values import Value
 from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._elements import Tendon, base_element_tuple, tendons_among
+from rockflex.structure._outline import DrawnStructure, Kind, Masses, has_shapes, innermost_structure
 from rockflex.structure._participation import MassNormalisedModes
 from rockflex.structure._rocking import RockingProperties
 
@@ -29,7 +30,7 @@ class Structure(Protocol):
     def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties: ...
 
 
-class AssembledStructure(ABC):
+class AssembledStructure(DrawnStructure, ABC):
     """A structure whose description is turned into another one, which has its modes and rocking properties."""
 
     @property
@@ -62,10 +63,16 @@ class AssembledStructure(ABC):
         return ()
 
 
-class ModifiedStructure:
+class ModifiedStructure(DrawnStructure):
     """A structure that has the modes of another one, and some other properties."""
 
     structure: Any  # a structure, or RockingProperties where the change needs no more
+
+    def outline_kind(self) -> Kind:
+        return self.structure.outline_kind() if isinstance(self.structure, DrawnStructure) else "column"
+
+    def concentrated_masses(self) -> Masses:
+        return self.structure.concentrated_masses() if isinstance(self.structure, DrawnStructure) else ()
 
     def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
         """Return the first `n_modes` modes on a fixed base (default: all).
@@ -128,20 +135,8 @@ def checked_structure(given: Structure | RockingProperties) -> Structure | Rocki
     return given
 
 
-def innermost_structure(structure: Any) -> Any:
-    """Return what stands on an eccentric base, is restrained, or is modified in another way."""
-    while isinstance(structure, ModifiedStructure):
-        structure = structure.structure
-    return structure
-
-
-def has_shapes(structure: Any) -> bool:
-    """Tell whether the shapes of the modes of a structure are known; its `RockingProperties` have none."""
-    return structure is not None and not isinstance(innermost_structure(structure), RockingProperties)
-
-
 @dataclass(frozen=True, eq=False)
-class ModalStructure(Value):
+class ModalStructure(DrawnStructure, Value):
     """A structure given by its modes, as returned by `from_matrices` and `from_modes`.
 
     Attributes

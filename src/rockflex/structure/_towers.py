@@ -22,6 +22,7 @@ from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._from_matrices import from_matrices
+from rockflex.structure._outline import Kind, Masses
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
@@ -260,6 +261,12 @@ class CantileverWithTipMass(AssembledStructure, Value):
     def assembled(self) -> Beam | ModalStructure:
         """The beam, or the body with two degrees of freedom: `built`."""
         return self.built
+
+    def outline_kind(self) -> Kind:
+        return "mast"
+
+    def concentrated_masses(self) -> Masses:
+        return ((self.height, self.tip_mass),)
 
     def unit_warnings(self) -> tuple[str, ...]:
         """Return a text about a tip of less than a tenth of the mass of its column."""

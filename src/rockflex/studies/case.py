@@ -25,7 +25,6 @@ from rockflex.studies._arguments import (
     InitialState,
     Output,
     checked_structures,
-    checked_work_limit,
     ground_under_structure,
     is_structure_or_properties,
     rocking_properties_of,
@@ -45,6 +44,7 @@ from rockflex.studies._record_tables import GivenRecords, Moved
 from rockflex.studies._run_matrix import check_different_values
 from rockflex.studies._simulate import simulate_many
 from rockflex.studies.progress import ProgressChoice, reporting_progress
+from rockflex.studies.running import checked_work_limit
 
 if TYPE_CHECKING:
     import pandas as pd

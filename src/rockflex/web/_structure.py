@@ -17,10 +17,10 @@ from rockflex.structure._adequacy import adequacy
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure._ground import Ground
-from rockflex.structure._outline import StructureOutline, structure_outline
+from rockflex.structure._outline import StructureOutline, has_shapes, structure_outline
 from rockflex.structure._pivot import Pivot
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Structure, has_shapes, structure_warnings
+from rockflex.structure._structure import Structure, structure_warnings
 from rockflex.structure._uplifted import uplifted_modes
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._structure_tables import MatricesTable, ModesTable, StructureTable

@@ -13,9 +13,8 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response._history import History
-from rockflex.structure._outline import BODY, GROUND, StructureOutline, structure_outline
+from rockflex.structure._outline import BODY, GROUND, StructureOutline, has_shapes, structure_outline
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import has_shapes
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
@@ -200,6 +199,25 @@ def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Arra
         impact=(since < _IMPACT_SECONDS * speed) & running,
         lifts=model.lifts,
         sprung=sprung,
+    )
+
+
+def resting_poses(outline: StructureOutline, springs: Array) -> StructurePoses:
+    """Return the pose of a structure that stands on the ground or on unloaded springs, as a single frame."""
+    still, never = np.zeros(1), np.zeros(1, bool)
+    return StructurePoses(
+        outline=outline,
+        springs=springs,
+        rotation=still,
+        slip=still,
+        heave=still,
+        sway=np.zeros((1, outline.heights.size)),
+        rise=np.zeros((1, 2)),
+        uplifted=never,
+        sliding=never,
+        impact=never,
+        lifts=True,
+        sprung=springs.size > 0,
     )
 
 

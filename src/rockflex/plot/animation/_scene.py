@@ -18,11 +18,10 @@ from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
-from rockflex.structure._outline import SYMBOLS, Stroke
+from rockflex.structure._outline import ELEMENT_COLORS, SYMBOLS, Stroke
 
 Polyline = Sequence[tuple[float, float]]
 
-ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
 SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
 DARK_RED = "#b3261e"
 _MAX_WIDE_SPRINGS = 4
@@ -98,15 +97,25 @@ class MetresToStagePoints(NamedTuple):
 
 
 class StructureArtists:
-    """The artists of one structure; `show` moves them to a frame."""
+    """The artists of one structure; `show` moves them to a frame.
+
+    Elements are in the colours of their kinds, or in given ones.
+    """
 
     def __init__(
-        self, axes: Axes, poses: StructurePoses, curve: ResponseCurve, here: MetresToStagePoints, amplification: float
+        self,
+        axes: Axes,
+        poses: StructurePoses,
+        color: str,
+        here: MetresToStagePoints,
+        amplification: float,
+        element_colors: Sequence[str] = (),
     ) -> None:
         self._poses, self._here, self._by = poses, here, amplification
         self._sunk = (here.level - here.ground) / here.zoom
         self._elements = poses.outline.elements if poses.lifts else ()
-        color, strokes = curve.style.color, poses.outline.strokes
+        self._colors = element_colors or [ELEMENT_COLORS[symbol] for symbol, _ in self._elements]
+        strokes = poses.outline.strokes
         for points, *_ in strokes:
             axes.plot(*here((points[:, 0], points[:, 1])), color=_AT_REST, linewidth=0.8)
         self._gap = _animated_area(axes, facecolor=figures.RED, alpha=0.25, linewidth=0.0)
@@ -117,8 +126,7 @@ class StructureArtists:
             (_animated_line(axes, color, _WIDTH * width, capstyle="butt"), _joined_strokes(strokes, width))
             for width in sorted({each.width for each in strokes})
         ]
-        kinds = sorted({symbol for symbol, _ in self._elements})
-        self._element_lines = {kind: _animated_line(axes, ELEMENT_COLORS[kind], 1.3) for kind in kinds}
+        self._element_lines = {each: _animated_line(axes, each, 1.3) for each in dict.fromkeys(self._colors)}
         self._impacts = _animated_line(
             axes, figures.RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8
         )
@@ -162,13 +170,13 @@ class StructureArtists:
         self._free.set_data(*joined_polylines(lines[True]))
 
     def _show_elements(self, frame: int) -> None:
-        parts: dict[str, list[Array]] = {symbol: [] for symbol in self._element_lines}
-        for symbol, ends in self._elements:
+        parts: dict[str, list[Array]] = {color: [] for color in self._element_lines}
+        for (symbol, ends), color in zip(self._elements, self._colors, strict=True):
             start, end = np.column_stack(self._here(self._poses.moved(frame, ends, self._by, self._sunk)))
             lines = symbol_lines(symbol, float(np.hypot(*(end - start))))
-            parts[symbol].append(np.column_stack(lines_between_points(lines, start, end)))
-        for symbol, lines in parts.items():
-            self._element_lines[symbol].set_data(*joined_polylines(lines))
+            parts[color].append(np.column_stack(lines_between_points(lines, start, end)))
+        for color, lines in parts.items():
+            self._element_lines[color].set_data(*joined_polylines(lines))
 
 
 def _joined_strokes(strokes: Sequence[Stroke], width: float) -> Array:
@@ -211,18 +219,18 @@ class StructurePanel:
         width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
         axes.set(xlim=(0.0, width), ylim=(0.0, height))
         cell = width / len(curves)
-        extents = [_structure_extent(each, amplification) for each in poses]
+        extents = [structure_extent(each, amplification) for each in poses]
         sprung = any(each.sprung for each in poses)
         zoom, depth = _stage_zoom(extents, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
         self._structures: list[StructureArtists] = []
         self._texts: list[tuple[Artist, Artist]] = []
         for place, (curve, each, extent) in enumerate(zip(curves, poses, extents, strict=True)):
             middle = cell * (place + 0.5)
-            _draw_stage_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
+            draw_stage_ground(axes, FOOT, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
             here = MetresToStagePoints(
                 middle - zoom * extent.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom
             )
-            self._structures.append(StructureArtists(axes, each, curve, here, amplification))
+            self._structures.append(StructureArtists(axes, each, curve.style.color, here, amplification))
             axes.text(
                 middle, height - HEAD + 8.0, curve.label, color=curve.style.color, ha="center", weight="bold",
                 fontsize=9.0, wrap=False,
@@ -234,7 +242,7 @@ class StructurePanel:
         axes.text(
             width - EDGE,
             height - 10.0,
-            _animation_scales_text(amplification, timing.speed),
+            animation_scales_text(amplification, timing.speed),
             ha="right",
             fontsize=8.0,
             color=_INK,
@@ -261,14 +269,14 @@ class StructurePanel:
             number.set(text=f"θ = {rotation} {self._turn.name}" if poses.lifts else "")
 
 
-def _animation_scales_text(amplification: float, speed: float) -> str:
+def animation_scales_text(amplification: float, speed: float) -> str:
     """Say how displacements and time are enlarged."""
     size = translated("displacements × {factor}", factor=f"{amplification:g}")
     size = translated("true displacements") if amplification == 1.0 else size
     return size if speed == 1.0 else f"{size}, {translated('speed × {factor}', factor=f'{speed:g}')}"
 
 
-class _StructureExtent(NamedTuple):
+class StructureExtent(NamedTuple):
     """Extent of a structure in m: to the left and right of its axis, upwards, and below its unloaded springs."""
 
     left: float
@@ -289,7 +297,7 @@ class _StructureExtent(NamedTuple):
 
 
 def _stage_zoom(
-    extents: Sequence[_StructureExtent], width: float, height: float, *, sprung: bool
+    extents: Sequence[StructureExtent], width: float, height: float, *, sprung: bool
 ) -> tuple[float, float]:
     """Return the points per metre that keep everything in its cell, and the points below the unloaded springs."""
     up = max(extent.up for extent in extents)
@@ -300,7 +308,7 @@ def _stage_zoom(
     return min(zoom, (height - depth) / up), depth
 
 
-def _structure_extent(poses: StructurePoses, amplification: float) -> _StructureExtent:
+def structure_extent(poses: StructurePoses, amplification: float) -> StructureExtent:
     """Return the room that a structure needs in all frames."""
     o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _MAX_FRAMES_SEARCHED).astype(int))
     extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
@@ -312,13 +320,14 @@ def _structure_extent(poses: StructurePoses, amplification: float) -> _Structure
         across += [*there]
         up.append(float(above.max()))
     sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
-    return _StructureExtent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
+    return StructureExtent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
 
 
-def _draw_stage_ground(axes: Axes, left: float, right: float) -> None:
-    axes.plot([left, right], [FOOT - 1.5] * 2, color=figures.GRAY, linewidth=1.0)
+def draw_stage_ground(axes: Axes, level: float, left: float, right: float) -> None:
+    """Draw the surface of the ground, hatched below; everything in points."""
+    axes.plot([left, right], [level - 1.5] * 2, color=figures.GRAY, linewidth=1.0)
     for x in np.arange(left + 6.0, right, 7.0):
-        axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=figures.GRAY, linewidth=0.7)
+        axes.plot([x, x - 4.0], [level - 2.0, level - 6.5], color=figures.GRAY, linewidth=0.7)
 
 
 class HistoryPanels:

@@ -446,7 +446,7 @@ def _element_table_row(
         value_cell(force, f"max_element_force_{place + 1}", units.of("force").size),
         value_cell(elongation, f"max_element_elongation_{place + 1}", units.of("displacement").size),
         ReportCell(
-            translated("broke") if broke else state[yielded], None, "", broke or (yielded and element.prestressed)
+            translated("broken") if broke else state[yielded], None, "", broke or (yielded and element.prestressed)
         ),
     ]
 

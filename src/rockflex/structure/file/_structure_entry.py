@@ -15,8 +15,9 @@ from rockflex.structure._attachment import PLACE
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._leaning import Leaning
+from rockflex.structure._outline import has_shapes
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, Structure, has_shapes
+from rockflex.structure._structure import Eccentric, Restrained, Structure
 from rockflex.structure._yielding_stories import YieldingStories
 from rockflex.structure.file._element_tables import ELEMENT_NAMES, AnyElementTable
 from rockflex.structure.file._structure_tables import STRUCTURES, Built, StructureTable
