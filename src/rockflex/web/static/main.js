@@ -250,7 +250,11 @@ async function renew(runs) {
   }
   keep();
   await show();
-  for (const [name, { close }] of before) if (runs && close) made[name] ??= (await import(`./tabs/${name}.js`)).default(app);
+  for (const [name, { close }] of before) {
+    if (!runs || !close) continue;
+    const { default: make } = await import(`./tabs/${name}.js`); // meanwhile it may be shown
+    made[name] ??= make(app);
+  }
 }
 
 function reason(error) {
