@@ -92,8 +92,10 @@ export class Study {
   refresh() {
     this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
     if (!this.token && !this.asked) this.#start(this.example());
-    else if (this.token) this.#watch();
-    if (this.answer) this.load();
+    else if (this.token) {
+      this.load(); // again, where an answer for the choices before is on its way
+      this.#watch();
+    }
   }
 
   // The page was reopened from a link; or the tab is made anew, and goes on with its `runs`.
