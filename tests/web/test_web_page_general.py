@@ -72,9 +72,7 @@ def test_a_damaged_link_is_told(visit, link) -> None:
         (None, "does not hold a state"),
         ("/#elsewhere", None),
         ("/#s=AAAA", "it is damaged"),
-        (link({"structure": {"frame": {"n_stories": 10**6}}}), "structure.frame.story_height: it is missing"),
         (link(7), "The link does not hold a state of the page."),
-        (link({"structure": PRESETS[1]["structure"], "models": ["<img src=x onerror=alert(1)>"]}), "Unknown model"),
     ):
         if address:
             visitor.follow(address)
@@ -85,6 +83,94 @@ def test_a_damaged_link_is_told(visit, link) -> None:
             assert "The link cannot be opened" in banner.inner_text()
             assert text in banner.inner_text()
         visitor.page.wait_for_selector("#adequacy")
+
+
+def test_a_link_with_bad_values_opens_with_them_in_their_fields(visit, link, client) -> None:
+    frame = PRESETS[1]["structure"]
+    state = client.state(
+        structure=frame,
+        head={"title": "Kept"},
+        scale=500,
+        tab="fragility",
+        cloud={"limit": "rotation", "rotation": 9.0},
+    )
+    visitor = visit(link(state))
+    page, banner = visitor.page, visitor.page.locator("#banner")
+    assert "scale: it must be" in banner.inner_text()
+    visitor.tab("response")
+    visitor.wait_for_error("scale", "500")
+    scale = page.locator('[data-path="scale"] input[type="text"]')
+    assert (scale.input_value(), scale.get_attribute("aria-invalid")) == ("500", "true")
+    visitor.tab("fragility")
+    visitor.wait_for_error("cloud.rotation", "from 0.0001 to 1.5")
+    assert visitor.state()["head"] == {"title": "Kept"}
+    assert visitor.state()["structure"]["frame"]["period"] == frame["frame"]["period"]
+    visitor.follow(link({"structure": {"frame": {"n_stories": 10**6}}, "head": {"author": "A"}}))
+    assert "structure.frame.story_height: it is missing" in banner.inner_text()
+    visitor.wait_for_error("structure.frame.story_height", "missing")
+    assert visitor.state()["head"] == {"author": "A"}
+    visitor.follow(link({"structure": frame, "models": ["<img src=x onerror=alert(1)>"]}))
+    assert "Unknown model" in banner.inner_text()
+    visitor.wait_for_error("models", "Unknown model")
+
+
+def test_changes_are_undone_and_done_again(visitor) -> None:
+    """Also where the drawing cannot follow: what is typed stays, and the numbers of another structure are dimmed."""
+    page, tall = visitor.page, visitor.page.locator('[data-path="few.H"] input')
+    first = visitor.state()["structure"]
+    visitor.wait_for_results()
+    assert page.locator("#undo").is_disabled()
+    visitor.fill("few.H", "35000")
+    visitor.wait_for_error("few.H", "7000")
+    page.wait_for_selector("#three.stale")
+    visitor.fill("few.B", "1.2")  # another field shows the state as well, and leaves it as it is
+    page.wait_for_function("() => !pendingAnswers")
+    assert (tall.input_value(), tall.get_attribute("aria-invalid")) == ("35000", "true")
+    assert visitor.state()["structure"]["frame"]["story_height"] == 35000 / 5
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    page.wait_for_selector("#three:not(.stale) dd")
+    assert visitor.state()["structure"] == first
+    page.wait_for_function("""() => document.querySelector('[data-path="few.H"] input').value === '15'""")
+    page.keyboard.press("Control+y")
+    visitor.wait_for_error("few.H", "7000")
+    visitor.fill("few.H", "15")  # typing the old one mends it
+    page.wait_for_selector("#three:not(.stale) dd")
+    ends = [{**each["frame"], "stiffness_ratio": 0} for each in (visitor.state()["structure"], first)]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-5)
+    assert page.locator('[data-path="few.H"] > .error').inner_text() == ""
+    assert page.locator("#redo").is_disabled()
+    visitor.fill("few.T", "-1")
+    visitor.wait_for_error("few.T", "above 0")
+    assert page.locator('[data-path="few.T"] input').input_value() == "-1"
+    visitor.tab("earthquake")
+    visitor.fill("scale", "3")
+    page.locator('[data-path="scale"] input[type="text"]').focus()
+    page.keyboard.type("9")  # typed only: the browser's own undo
+    page.keyboard.press("Control+z")
+    assert visitor.state()["scale"] == 3
+    page.locator("#undo").click()
+    page.wait_for_function("() => rockflexPage.state.scale === 1 && rockflexPage.state.tab === 'earthquake'")
+
+
+def test_going_back_leaves_the_state_as_it_was_and_alternatives_survive_another_visit(visitor, client) -> None:
+    page = visitor.page
+    page.locator("#keep").click()
+    visitor.fill("structure.frame.aspect_ratio", "8")
+    before = visitor.state()
+    page.get_by_role("button", name="Edit again: A").click()
+    page.wait_for_function("() => rockflexPage.state.structure.frame.aspect_ratio === 10")
+    page.evaluate("() => { rockflexPage.change({ scale: 7 }, true); history.back(); }")  # not written yet
+    page.wait_for_function("() => rockflexPage.state.structure.frame.aspect_ratio === 8")
+    visitor.pictures(30)
+    assert visitor.state() == before
+    page.goto("about:blank")
+    visitor.open("/")  # without the link
+    assert [each["name"] for each in visitor.state()["alternatives"]] == ["A"]
+    page.locator('[aria-label="Remove: A"]').click()
+    page.goto("about:blank")
+    visitor.open("/")
+    assert visitor.state()["alternatives"] == []
 
 
 @pytest.mark.slow

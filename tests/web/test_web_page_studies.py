@@ -6,6 +6,9 @@ from typing import Any
 import pytest
 
 import rockflex as rf
+from builders import make_frame
+from rockflex.web._state import parse_page_state
+from rockflex.web._structure import build_page_structure
 
 pytestmark = pytest.mark.web
 
@@ -126,6 +129,20 @@ def test_design_answers_how_wide(visitor) -> None:
     )
     free, held = (visitor.value(f'#width p[data-tendon="{name}"]') for name in ("no tendon", "F₀ = 0.2 W"))
     assert held < free
+    before = visitor.state()["structure"]
+    page.get_by_role("button", name="Use it").last.click()
+    page.wait_for_selector('#view[data-shown="structure"]')
+    built = build_page_structure(parse_page_state(visitor.state()).structure).properties
+    assert built.half_width == pytest.approx(held, rel=1e-5)
+    level = rf.TendonLevel(0.2, 0.5).held(
+        make_frame(aspect_ratio=10.0 * make_frame().rocking().half_width / held).rocking()
+    )
+    assert built.tendons[0].initial_force == pytest.approx(level.tendons[0].initial_force, rel=1e-9)
+    assert built.tendons[0].stiffness == pytest.approx(level.tendons[0].stiffness, rel=1e-6)
+    page.locator("#undo").click()
+    page.wait_for_function("() => !rockflexPage.state.structure.elements")
+    assert visitor.state()["structure"] == before
+    visitor.tab("design")
     visitor.fill("design.target", "0.0001")
     page.wait_for_selector("text=no base tried is wide enough")
     visitor.fill("design.widest", "999")
@@ -141,8 +158,12 @@ def test_a_search_is_cancelled_and_told_of_changes(visitor) -> None:
     visitor.fill("design.widths", "20")  # takes longer than it takes to cancel it
     page.get_by_role("button", name="Search", exact=True).click()
     page.wait_for_function("() => /^[1-9]\\d* of/.test(document.querySelector('#status').textContent)")
+    assert "not decided" in page.locator("#width").inner_text()
+    page.wait_for_function("() => / left/.test(document.querySelector('#status').textContent)")
     page.get_by_role("button", name="Cancel").click()
     page.wait_for_function("() => document.querySelector('#status').textContent.startsWith('Cancelled after')")
+    assert "not decided" in page.locator("#width").inner_text()
+    assert page.locator("#width p").count() == 0
     visitor.fill("design.widths", "5")
     page.get_by_text("The input has changed: search again.").wait_for()
     visitor.fill("design.target", "0.5")  # a question, for which nothing runs again

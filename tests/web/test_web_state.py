@@ -22,6 +22,7 @@ from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.web._encoding import envelope_indices
 from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
+from rockflex.web._links import usable_page_state
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import PageState, parse_page_json, parse_page_state
 from rockflex.web._structure import build_page_structure, structure_view
@@ -103,6 +104,35 @@ def test_what_cannot_be_used_is_said_beside_its_field(state, path, text) -> None
     found = errors(state)
     assert text in found[path]
     assert "Traceback" not in found[path]
+
+
+@pytest.mark.parametrize(
+    ("change", "kept"),
+    [
+        ({"scale": 500}, {"scale": 500}),
+        ({"record": {"source": "nowhere"}}, {"record": {"source": "suite"}}),  # no list has it
+        ({"cloud": {"scales": [0.5, 99]}, "soul": 1}, {"cloud": {"scales": [0.5, 99]}}),
+        ({"structure": {"frame": {"n_stories": -3}}}, {"structure": {"frame": {"n_stories": -3}}}),
+        ({"ground": {"friction": -1}}, {"ground": {"friction": -1}}),
+        ({"structure": {"frame": 3}}, {"structure": PRESETS[0]["structure"]}),
+        ({"alternatives": [{"name": "A"}, 7, {"name": "B", "structure": FRAME, "models": ["fixed"]}]},
+         {"alternatives": [{"name": "B"}]}),
+    ],
+)  # fmt: skip
+def test_what_a_bad_link_leaves_opens(change, kept) -> None:
+    """Bad numbers stay in their fields, and nothing else is lost."""
+
+    def holds(found, wanted):
+        if isinstance(wanted, dict):
+            return all(holds(found[name], each) for name, each in wanted.items())
+        if isinstance(wanted, list) and wanted and isinstance(wanted[0], dict):
+            return len(found) == len(wanted) and all(map(holds, found, wanted))
+        return found == wanted
+
+    content = {"structure": FRAME, "head": {"title": "Kept"}, "free_vibration": 7.0, **change}
+    found = usable_page_state(content, PRESETS[0]["structure"])
+    assert holds(found, kept)
+    assert (found["head"], found["free_vibration"]) == ({"title": "Kept"}, 7.0)
 
 
 def test_text_never_becomes_the_path_of_a_file() -> None:

@@ -36,6 +36,7 @@ from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, 
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
+from rockflex.web._links import usable_page_state
 from rockflex.web._projects import read_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders, TokenRequired
 from rockflex.web._readers import Readers
@@ -113,9 +114,9 @@ class PageServer:
         return JSONResponse(await anyio.to_thread.run_sync(suite_view, name))
 
     async def state(self, request: Request) -> Response:
-        """Check the state of a link, and fill in its missing values."""
-        state, _ = await _state_and_content(request)
-        return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
+        """Check the state of a link, and fill in its missing values; one that is refused opens as far as it can."""
+        body = await _request_body(request, "application/json")
+        return await anyio.to_thread.run_sync(_opened_link, body)
 
     def view(self, work: Callable[[PageState, dict[str, Any]], Any], slots: Slots | None = None) -> Endpoint:
         """Return the endpoint that answers with a function of the state, and of the whole content, of a request."""
@@ -309,6 +310,18 @@ def _parse_request_body(body: bytes) -> tuple[PageState, dict[str, Any]]:
     return parse_page_state(content.get("state")), content
 
 
+def _opened_link(body: bytes) -> Response:
+    try:
+        state, _ = _parse_request_body(body)
+    except Refusal as error:
+        if error.status != 422:
+            raise
+        content = parse_page_json(body).get("state")
+        opened = usable_page_state(content, FIRST["structure"]) if isinstance(content, dict) else None
+        return JSONResponse({"errors": _shortened(error), "state": as_json_value(opened)}, error.status)
+    return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
+
+
 def _sampling_step_in_query(text: str, field: str = "record.upload") -> float | None:
     """Return the sampling step in a query; None for the file's own. Messages are about `field`."""
     if not text.strip():
@@ -446,8 +459,11 @@ def _described(outputs: Mapping[str, Output]) -> dict[str, dict[str, str]]:
 
 async def _answer_to_refusal(_: Request, error: Exception) -> Response:
     assert isinstance(error, Refusal)
-    errors = {path[:200]: text[:MAX_MESSAGE_LETTERS] for path, text in error.errors.items()}
-    return JSONResponse({"errors": errors}, status_code=error.status)
+    return JSONResponse({"errors": _shortened(error)}, status_code=error.status)
+
+
+def _shortened(error: Refusal) -> dict[str, str]:
+    return {path[:200]: text[:MAX_MESSAGE_LETTERS] for path, text in error.errors.items()}
 
 
 async def _answer_to_unusable_input(_: Request, error: Exception) -> Response:

@@ -15,12 +15,14 @@ from rockflex.fragility._clouds import CloudFits, fit_each_cloud, recordings_of_
 from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKING, observed_exceedance_fractions
 from rockflex.fragility._outcomes import fit_outcomes
 from rockflex.motion._measures import MEASURES
+from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._prepared_case import yielding_model_labels
 from rockflex.studies._result_tables import count_pivot_lifts, tables_to_dataframe
 from rockflex.studies._study_kind import KINDS
 from rockflex.studies.cloud import CloudPlan, CloudStudy
 from rockflex.studies.design._design_study import DesignStudy
 from rockflex.studies.design._design_table import design_table, smallest_width
+from rockflex.studies.design._designs import TendonLevel
 from rockflex.web._jobs import RunsJob, StudyJob
 from rockflex.web._limits import MAX_RUN_COST, check_size_of_study
 from rockflex.web._refusal import Refusal, errors_as_refusals
@@ -294,10 +296,10 @@ def _design_table(job: StudyJob, state: PageState) -> "pd.DataFrame":
 
 
 def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
-    """Return progress, the probability against the half width for every tendon, and the smallest width."""
+    """Return progress, the probability against the half width for every tendon, and once done the smallest width."""
     choice = state.design
-    present = build_page_structure(state.structure).properties.half_width
-    view: dict[str, Any] = study_progress_view(job, choice.measure) | {"present": present, "answers": []}
+    p = build_page_structure(state.structure).properties
+    view: dict[str, Any] = study_progress_view(job, choice.measure) | {"present": p.half_width, "answers": []}
     runs = runs_of_study_job(job)
     lost = {} if runs is None else no_solved_run_message(job, runs)
     if runs is None or lost:
@@ -308,11 +310,22 @@ def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{translated(str(tendon))}: {note}" for note in dict.fromkeys(part["note"]) if note]
     view["notes"] += [text for each in count_pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
-    answers = smallest_width(table, choice.target)
-    view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
-        "records"
-    )
+    if job.status == "done":  # the widths that lack runs may be wide enough, or not
+        answers = smallest_width(table, choice.target)
+        shown = ["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]
+        view["answers"] = answers[shown].to_dict("records")
+        for found, row in zip(view["answers"], answers.itertuples(), strict=True):
+            found["tendon_of"] = _tendon_at(p, row)
     return as_json_value(view)
+
+
+def _tendon_at(p: RockingProperties, row: Any) -> dict[str, float] | None:
+    """Return the tendon of an answer on a base of the width found; None where there is none."""
+    if not (row.half_width > 0.0 and row.prestress_ratio > 0.0):
+        return None
+    level = TendonLevel(float(row.prestress_ratio), float(row.stiffness_ratio))
+    (tendon, *_) = level.held(p.with_half_width(float(row.half_width))).tendons
+    return {"initial_force": tendon.initial_force, "stiffness": tendon.stiffness}
 
 
 def _design_figure(job: StudyJob, state: PageState) -> Any:

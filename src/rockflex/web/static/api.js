@@ -3,10 +3,9 @@
 import { t } from "./texts.js";
 
 export class Refusal extends Error {
-  constructor(errors, status) {
+  constructor(errors, status, state = null) {
     super(Object.values(errors).join(" "));
-    this.errors = errors;
-    this.status = status;
+    Object.assign(this, { errors, status, state }); // the state that opens all the same
   }
 }
 
@@ -22,8 +21,8 @@ export async function attempt(work, refused) {
 
 async function checked(response) {
   if (response.ok) return response;
-  const { errors } = await response.json().catch(() => ({})); // a proxy's page is not JSON
-  throw new Refusal(errors ?? { "": t("The server responded with status {status}.", { status: response.status }) }, response.status);
+  const { errors, state } = await response.json().catch(() => ({})); // a proxy's page is not JSON
+  throw new Refusal(errors ?? { "": t("The server responded with status {status}.", { status: response.status }) }, response.status, state);
 }
 
 const PAGE = new URL("..", import.meta.url); // a server in front may have the page under a path of its own

@@ -24,36 +24,43 @@ const times = (value, factor) => eachNumber(value, (each) => Number((each * fact
 export const kindOf = (structure, kinds) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
 
 // What a structure measures, and how each measure is set: half width, height and first period, where they are in a field
-// of its form. The others stay as they are, so a wider frame of the same period has another slenderness.
-export function measures(structure, view, kinds) {
+// of its form. The others stay as they are, so a wider frame of the same period has another slenderness. `view` is of the
+// structure `of`, and `structure` may have changed since: each measure is what the fields of `structure` make of it.
+export function measures(structure, view, kinds, of = structure) {
   const kind = kindOf(structure, kinds);
-  const values = structure[kind];
+  const [values, seen] = [structure[kind], of[kind]];
+  if (!seen) return {};
   const [B, H, T] = [view.half_width, view.heights.at(-1), view.period];
   const into = (patch) => ({ ...clone(structure), [kind]: { ...values, ...patch } });
-  const scaled = (names, factor) => Object.fromEntries(names.filter((name) => name in values).map((name) => [name, times(values[name], factor)]));
-  const block = (half, height) => ({ ...clone(structure), block: { mass: values.mass, width: 2 * half, height } });
+  const scaled = (names, factor) => Object.fromEntries(names.filter((name) => name in seen).map((name) => [name, times(seen[name], factor)]));
+  const grown = (name) => (typeof values[name] === "number" && values[name] && seen[name] ? values[name] / seen[name] : 1);
   const found = {};
   if (kind === "block") {
-    found.B = { value: B, set: (v) => block(v, H) };
-    found.H = { value: H, set: (v) => block(B, v) };
+    const sized = "width" in values; // or by slenderness and half diagonal
+    const [half, tall] = sized ? [values.width / 2, values.height] : [values.half_diagonal * Math.sin(values.slenderness), 2 * values.half_diagonal * Math.cos(values.slenderness)];
+    const block = (b, h) => ({ ...clone(structure), block: { mass: values.mass, width: Number((2 * b).toPrecision(6)), height: Number(h.toPrecision(6)) } });
+    const fields = sized ? ["width", "height"] : ["slenderness", "half_diagonal"];
+    if (half > 0) Object.assign(found, { B: { value: half, fields, set: (v) => block(v, tall) }, H: { value: tall, fields, set: (v) => block(half, v) } });
     return found;
   }
-  if (kind !== "properties") {
-    const direct = ["half_width", "base_radius"].find((name) => name in values);
-    found.B = { value: B, set: (v) => into(direct ? { [direct]: v } : scaled(["aspect_ratio"], B / v)) };
-  }
-  if (HEIGHTS[kind] && !values.z && !values.lumped_masses)
-    found.H = { value: H, set: (v) => into(scaled([HEIGHTS[kind], "aspect_ratio"], v / H)) };
-  if (values.period !== undefined) found.T = { value: T, set: (v) => into({ period: times(values.period, v / T) }) }; // masses that lean make T longer than the field
-  else if (T && STIFFNESSES.some((name) => name in values)) found.T = { value: T, set: (v) => into(scaled(STIFFNESSES, (T / v) ** 2)) };
+  const direct = ["half_width", "base_radius"].find((name) => name in seen);
+  const [high, stiff] = [HEIGHTS[kind], STIFFNESSES.filter((name) => name in seen)];
+  const tall = H * grown(high);
+  const half = direct ? values[direct] : (B * grown(high)) / grown("aspect_ratio");
+  const aspect = (h, b) => ("aspect_ratio" in seen ? scaled(["aspect_ratio"], (h / H) * (B / b)) : {});
+  if (kind !== "properties") found.B = { value: half, fields: [direct ?? "aspect_ratio"], set: (v) => into(direct ? { [direct]: v } : aspect(tall, v)) };
+  if (high && !values.z && !values.lumped_masses)
+    found.H = { value: tall, fields: [high], set: (v) => into({ ...scaled([high], v / H), ...(direct ? {} : aspect(v, half)) }) };
+  if (seen.period !== undefined) found.T = { value: T * grown("period"), fields: ["period"], set: (v) => into({ period: times(seen.period, v / T) }) }; // masses that lean make T longer than the field
+  else if (T && stiff.length) found.T = { value: T / Math.sqrt(grown(stiff[0])), fields: stiff, set: (v) => into(scaled(stiff, (T / v) ** 2)) };
   return found;
 }
 
 // The handles of a drawing: each is a number with its range, at a place in metres, in a `row` below it. What stands in a
 // pair about the middle stays a pair.
-function handles(app, view, wanted) {
+function handles(app, view) {
   const { structure, ground } = app.state;
-  const { B, H } = measures(view.of, view, app.about.kinds);
+  const { B, H } = measures(structure, view, app.about.kinds, view.of);
   const { half_width: b, eccentricity: e } = view;
   const within = [-b - e, b - e];
   const places = (structure.elements ?? []).filter((each) => !each.between && !each.height).map((each) => each.position ?? 0);
@@ -61,11 +68,11 @@ function handles(app, view, wanted) {
   const stood = springs ? (springs.positions ?? within) : [];
   const reach = Math.max(0, ...[...places, ...(springs?.positions ?? [])].map((x) => Math.abs(x + e)));
   const found = [];
-  if (B) found.push({ name: "B", label: t("Half width of the base"), value: wanted.B ?? B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
-    at: [(wanted.B ?? b) - e, 0],
+  if (B?.value > 0) found.push({ name: "B", label: t("Half width of the base"), value: B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
+    at: [B.value - e, 0],
     next: (v) => ({ structure: B.set(v) }) });
-  if (H) found.push({ name: "H", label: t("Height"), up: true, value: wanted.H ?? H.value, range: [H.value / 4, 4 * H.value],
-    at: [0, wanted.H ?? H.value],
+  if (H?.value > 0) found.push({ name: "H", label: t("Height"), up: true, value: H.value, range: [H.value / 4, 4 * H.value],
+    at: [0, H.value],
     next: (v) => ({ structure: H.set(v) }) });
   const moved = (all, i, v) => all.map((x, k) => (k === i ? v : k !== i && x !== 0 && Math.abs(x + all[i]) < 1e-9 ? -v : x));
   (structure.elements ?? []).forEach((each, i) => {
@@ -107,25 +114,23 @@ export function drawing(app, settle) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dots = new Map(); // by the name of their handle
   let view = null;
-  let wanted = {}; // width and height that no answer shows yet
   let told = 0; // when the fields were last given their values
   let held = null; // the handle that is dragged, as it was before
 
   // Below the drawing, for rows of handles.
   function makeRoom() {
-    stage.under = Math.max(...(view ? handles(app, view, wanted) : []).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
+    stage.under = Math.max(...(view ? handles(app, view) : []).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
   }
   touched.addEventListener("change", makeRoom);
 
   function act(handle, value, live) {
     const put = clamp(tidy(value), handle.range);
-    wanted = handle.name in { B: 0, H: 0 } ? { [handle.name]: put } : {};
     app.change(handle.next(put), live);
     place();
   }
 
   function dot(name) {
-    const now = () => held ?? handles(app, view, wanted).find((each) => each.name === name);
+    const now = () => held ?? handles(app, view).find((each) => each.name === name);
     const element = h("div", {
       class: "handle", role: "slider", tabindex: 0, "data-handle": name,
       onpointerdown: (event) => {
@@ -164,7 +169,7 @@ export function drawing(app, settle) {
   // Put every handle where the present state has it.
   function place() {
     if (!view) return;
-    const found = handles(app, view, wanted);
+    const found = handles(app, view);
     for (const [name, element] of dots) {
       if (found.some((each) => each.name === name)) continue;
       element.remove();
@@ -197,7 +202,9 @@ export function drawing(app, settle) {
   const figures = h("dl", { class: "values three", id: "three" });
   const note = h("p", { class: "hint", hidden: true });
   stage.element.after(figures, note);
-  const quick = few(app, () => view, settle);
+  // What is shown is not of the present state.
+  const stale = (on) => [stage.canvas, figures].forEach((each) => each.classList.toggle("stale", on));
+  const quick = few(app, () => view, settle, stale);
 
   // Show the response of a structure.
   function set(run, of) {
@@ -208,7 +215,6 @@ export function drawing(app, settle) {
     const first = !view;
     const [m] = run.models;
     for (const name of CURVES) m[name] = m[name] && decode(m[name]);
-    if (of === app.state.structure) wanted = {};
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
     makeRoom();
     player.set(view);
@@ -227,7 +233,7 @@ export function drawing(app, settle) {
 
   const resume = () => !calm.matches && view && !player.playing && player.toggle();
   globalThis.rockflexDrawn = { player, view: () => view };
-  return { player, set, quick, resume, leave: () => player.pause() };
+  return { player, set, quick, stale, resume, leave: () => player.pause() };
 }
 
 // Largest rotation, top displacement, and base moment over that of a fixed base.
@@ -247,22 +253,42 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
   ];
 }
 
-// The few inputs that matter, beside the drawing.
-function few(app, shown, settle) {
+let last = null; // what was measured last, from which a tab made anew goes on
+
+// The few inputs that matter, beside the drawing: they show the state, and what is typed that cannot be in it.
+function few(app, shown, settle, stale) {
+  const bad = new Map(); // the structure in whose place a text was typed, by the field
+  const measured = () => {
+    last = shown() ?? last;
+    return last ? measures(app.state.structure, last, app.about.kinds, last.of) : {};
+  };
   const field = (name, label, unit, hint) => box(`few.${name}`, label, "", (value) => {
-    const found = shown() && measures(shown().of, shown(), app.about.kinds)[name];
-    fields[name].querySelector(".error").textContent = value > 0 ? "" : t("It must be a number above 0.");
-    if (!found || !(value > 0)) return;
+    const { [name]: found } = measured();
+    tell(name, found && !(value > 0));
+    stale(bad.size > 0);
+    if (!found || bad.has(name)) return;
     app.change({ structure: found.set(value) }, true);
     settle();
   }, { unit, hint, digits: 4 });
   const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
+
+  // Beside a field, that it has no number that can be used, until another one is typed or the structure is another.
+  function tell(name, on) {
+    const place = fields[name].querySelector(".error");
+    if (on) bad.set(name, app.state.structure);
+    else bad.delete(name);
+    place.root = on ? place : null;
+    place.textContent = on ? t("It must be a number above 0.") : "";
+    fields[name].querySelector("input").setAttribute("aria-invalid", String(on));
+  }
   const record = select("few.record", t("Earthquake record"), [], "", (value) => {
     const [suite, name] = value.split("|");
     if (value === "more") app.go("earthquake");
     else app.change({ record: name ? { source: "suite", suite, name } : { source: suite } });
   });
   const scale = slider("few.scale", t("Scale factor of the record"), { low: 0.01, high: 20, log: true }, 1, (value, live) => app.change({ scale: value }, live));
+  scale.dataset.also = "scale";
+  record.dataset.also = "record.name record.suite record.upload record.folder record.pulse record";
   let known = [["el-centro-1940|EL-CENTRO-1940-NS", "El Centro 1940"], ["pulse", t("a pulse")]];
   attempt(() => get(`/api/suite/${FAR_FIELD}`), () => ({ records: [] })).then(({ records }) => {
     known = [...known, ...records.map(({ name, event }) => [`${FAR_FIELD}|${name}`, `${event}, ${name}`])];
@@ -270,7 +296,6 @@ function few(app, shown, settle) {
   });
 
   function refresh() {
-    const view = shown();
     const { record: now, scale: by } = app.state;
     const chosen = now.source === "suite" ? `${now.suite}|${now.name}` : now.source;
     if (record.dataset.listed !== `${known.length} ${chosen}`) { // not at every move of a handle
@@ -280,12 +305,17 @@ function few(app, shown, settle) {
     }
     record.setValue(chosen);
     scale.setValue(by);
-    const found = view ? measures(view.of, view, app.about.kinds) : {};
+    const found = measured();
+    const kind = kindOf(app.state.structure, app.about.kinds);
+    for (const [name, structure] of bad) if (structure !== app.state.structure) tell(name, false);
     for (const [name, each] of Object.entries(fields)) {
       each.hidden = !found[name];
-      if (found[name]) each.setValue(each.unit.size === 1 ? tidy(found[name].value) : found[name].value);
+      if (!found[name] || bad.has(name)) continue;
+      const { value, fields: own } = found[name];
+      each.dataset.also = own.map((key) => `structure.${kind}.${key}`).join(" ");
+      each.setValue(each.unit.size === 1 && value > 0 ? tidy(value) : value);
     }
-    if (view) fields.H.querySelector(".hint").textContent = t("{ratio} times B", { ratio: number(view.heights.at(-1) / view.half_width, 3) });
+    fields.H.querySelector(".hint").textContent = found.H?.value > 0 && found.B?.value > 0 ? t("{ratio} times B", { ratio: number(found.H.value / found.B.value, 3) }) : "";
   }
   return { element: h("div", { class: "few" }, Object.values(fields), record, scale), refresh };
 }

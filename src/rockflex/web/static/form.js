@@ -49,23 +49,28 @@ export function showErrors(root, errors) {
     const parts = path.split(".");
     let element = null;
     for (; parts.length && !element; parts.pop())
-      element = root.querySelector(`[data-path="${CSS.escape(parts.join("."))}"]`);
-    if (!element) {
+      element = [...root.querySelectorAll(`[data-path="${CSS.escape(parts.join("."))}"]`)].find((each) => !each.closest("[hidden]"));
+    if (!element && !root.querySelector(`[data-also~="${CSS.escape(path)}"]`)) {
       left.push(path ? `${path}: ${text}` : text);
       continue;
     }
-    for (let folded = element.closest("details"); folded; folded = folded.parentElement.closest("details")) folded.open = true;
-    const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
-    const { si } = element.dataset;
-    const place = element.querySelector(":scope > .error");
-    place.root = root;
-    place.textContent = si && /\d/.test(text)
-      ? t("In SI units ({unit}): {message}", { unit: si, message: text }) : sentence;
-    // A message about a whole group does not concern its single fields.
-    if (element.classList.contains("field"))
-      for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
+    // A field in sight that shows the same value has the message as well, and the folded form stays folded.
+    const twins = [...root.querySelectorAll(`[data-also~="${CSS.escape(path)}"]`)].filter((each) => !each.hidden);
+    for (let folded = element?.closest("details"); folded && !twins.length; folded = folded.parentElement.closest("details")) folded.open = true;
+    for (const each of [element, ...twins]) if (each) tellBeside(each, text, root);
   }
   return left;
+}
+
+function tellBeside(element, text, root) {
+  const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
+  const { si } = element.dataset;
+  const place = element.querySelector(":scope > .error");
+  place.root = root;
+  place.textContent = si && /\d/.test(text) ? t("In SI units ({unit}): {message}", { unit: si, message: text }) : sentence;
+  // A message about a whole group does not concern its single fields.
+  if (element.classList.contains("field"))
+    for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
 }
 
 function controls(element) {

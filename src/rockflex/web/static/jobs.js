@@ -44,6 +44,9 @@ export function choices(app, kind) {
   };
 }
 
+// What stands in place of a verdict while runs are lacking.
+export const undecided = ({ done, total }) => t("{done} of {total} runs: not decided.", { done, total });
+
 // A list of remarks on the fits, hidden while it is empty.
 export class Remarks {
   constructor() {
@@ -67,7 +70,7 @@ export class Study {
   // choices of a quick look, so that the tab begins with something to see; `words` are those of the button and the status.
   constructor(app, kind, { words, key, show, results, example }) {
     Object.assign(this, { app, kind, words, key, show, results, example });
-    this.answer = null;
+    this.answer = this.begun = null;
     this.watching = false;
     this.asked = 0; // how many studies and quick looks were started
     // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
@@ -89,8 +92,10 @@ export class Study {
   refresh() {
     this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
     if (!this.token && !this.asked) this.#start(this.example());
-    else if (this.token) this.#watch();
-    if (this.answer) this.load();
+    else if (this.token) {
+      this.load(); // again, where an answer for the choices before is on its way
+      this.#watch();
+    }
   }
 
   // The page was reopened from a link; or the tab is made anew, and goes on with its `runs`.
@@ -129,7 +134,7 @@ export class Study {
     const path = `/api/study/${this.kind}`;
     const found = looked ? await attempt(() => ask(path, { state: this.#with(looked) }), () => null) : await this.app.ask(path, this.#root);
     if (!found || asked !== this.asked) return; // a study took the place of the quick look
-    Object.assign(this, { token: found.token, looked, ran: wanted, answer: null });
+    Object.assign(this, { token: found.token, looked, ran: wanted, answer: null, begun: null });
     this.#watch();
   }
 
@@ -170,6 +175,16 @@ export class Study {
     });
   }
 
+  // The time that the rest takes at the pace so far, once some of it is known.
+  #left({ done, total }) {
+    const now = performance.now();
+    this.begun ??= { now, done };
+    const [seconds, more] = [(now - this.begun.now) / 1000, done - this.begun.done];
+    if (seconds < 1 || more <= 0) return "";
+    const rest = (seconds * (total - done)) / more;
+    return rest < 90 ? t("About {n} s left.", { n: Math.ceil(rest / 5) * 5 }) : t("About {n} min left.", { n: Math.ceil(rest / 60) });
+  }
+
   #draw() {
     const { answer } = this;
     const on = goes(answer);
@@ -179,7 +194,7 @@ export class Study {
     this.bar.value = answer.done / answer.total;
     for (const button of this.needRuns) button.disabled = !(answer.ready ?? answer.done) || Boolean(this.looked);
     this.status.textContent = [
-      this.looked ? t("A quick look, with fewer runs.") : "", STUDY_STATUS[answer.status](answer), old ? this.words.changed : "",
+      this.looked ? t("A quick look, with fewer runs.") : "", STUDY_STATUS[answer.status](answer), on ? this.#left(answer) : "", old ? this.words.changed : "",
     ].filter(Boolean).join(" ");
     this.results.classList.toggle("stale", old);
     this.show(answer);

@@ -25,6 +25,7 @@ const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
 const messages = new WeakMap(); // the last ones by the element that they are about
+let wrong = null; // the messages about the link, until something is changed
 let early = null; // the tab chosen before the state was known
 
 export const app = {
@@ -34,6 +35,7 @@ export const app = {
   // the address.
   change(patch, live = false) {
     merge(app.state, patch);
+    wrong = null;
     clearTimeout(later);
     if (live) later = setTimeout(keep, LIVE);
     else keep();
@@ -133,23 +135,97 @@ function heading() {
 
 let written = "";
 let later = null; // when the address is written
+const STEPS = 200; // that can be undone
+const ALTERNATIVES = "rockflex-alternatives"; // what the browser keeps of a state
+const [past, future] = [[], []]; // states without their tabs, as texts
+let present = null;
 
+const inUse = ({ tab: _, ...rest }) => JSON.stringify(rest);
+
+// Write the state into the address, and remember the one before.
 function keep() {
   clearTimeout(later);
   later = null;
+  const now = inUse(app.state);
+  if (present !== null && now !== present) {
+    past.push(present);
+    past.splice(0, past.length - STEPS);
+    future.length = 0;
+    if (inUse({ of: app.state.alternatives }) !== inUse({ of: JSON.parse(present).alternatives })) keepForLater(ALTERNATIVES, JSON.stringify(app.state.alternatives));
+  }
+  present = now;
+  offer();
   written = `#s=${encode(app.state)}`;
   history.replaceState(null, "", written);
 }
 
-async function open() {
+function offer() {
+  document.getElementById("undo").disabled = !past.length;
+  document.getElementById("redo").disabled = !future.length;
+}
+
+// Go to the state before the last change, or from there `to` the one after it; the tab stays.
+async function step(from, to) {
+  if (later) keep();
+  if (!from.length) return;
+  const [height, path] = [scrollY, document.activeElement.closest("[data-path]")?.dataset.path];
+  to.push(present);
+  present = from.pop();
+  app.state = { ...JSON.parse(present), tab: app.state.tab };
+  keepForLater(ALTERNATIVES, JSON.stringify(app.state.alternatives));
   banner.hidden = true;
+  document.getElementById("units").value = app.state.units;
+  await renew(true);
+  if (path) view.querySelector(`[data-path="${CSS.escape(path)}"]`)?.querySelector("input, select, textarea, button")?.focus();
+  scrollTo(0, height);
+}
+
+function undoing() {
+  const buttons = { undo: [t("Undo (Ctrl+Z)"), past, future], redo: [t("Redo (Ctrl+Y)"), future, past] };
+  for (const [id, [title, ...way]] of Object.entries(buttons)) {
+    const button = document.getElementById(id);
+    button.title = button.ariaLabel = title;
+    button.addEventListener("click", () => step(...way));
+  }
+  let typing = null; // a field whose text is no change yet: the browser undoes it
+  addEventListener("input", ({ target }) => (typing = target), true);
+  addEventListener("change", () => (typing = null), true);
+  addEventListener("keydown", (event) => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(key) || !app.state) return;
+    if (typing && typing === document.activeElement) return;
+    event.preventDefault();
+    step(...(key === "y" || event.shiftKey ? [future, past] : [past, future]));
+  });
+}
+
+// The alternatives of the last visit, where no link brings others.
+async function withKept(state) {
+  try {
+    const alternatives = JSON.parse(kept(ALTERNATIVES) ?? "[]");
+    return alternatives.length ? await ask("/api/state", { state: { ...state, alternatives } }) : state;
+  } catch {
+    return state; // of another version, or no JSON
+  }
+}
+
+async function open() {
+  clearTimeout(later); // what was changed last is not written over the address that is opened
+  later = null;
+  banner.hidden = true;
+  wrong = null;
   let state = clone(app.about.state);
-  if (location.hash.startsWith("#s=")) {
+  if (!location.hash.startsWith("#s=")) state = await withKept(state);
+  else {
     try {
       state = await ask("/api/state", { state: decoded(location.hash) });
     } catch (error) {
-      banner.textContent = t("The link cannot be opened: {reason} The default structure is shown instead.", { reason: reason(error) });
+      const [values, others] = [{ reason: reason(error) }, error instanceof Refusal && error.state];
+      banner.textContent = others ? t("The link has values that cannot be used: {reason} All others are as they were.", values)
+        : t("The link cannot be opened: {reason} The default structure is shown instead.", values);
       banner.hidden = false;
+      wrong = others && error.errors;
+      if (others) state = { ...others, tab: placeOf(Object.keys(error.errors)[0]) ?? others.tab };
     }
   }
   app.state = Object.assign(state, { language });
@@ -158,6 +234,10 @@ async function open() {
   document.getElementById("units").value = state.units;
   await renew(false);
 }
+
+// The tab that has a field.
+const placeOf = (path) => ({ structure: "structure", record: "earthquake", target: "earthquake", cloud: "fragility", design: "design", limits: "response",
+  free_vibration: "response", record_set: "response" })[path.split(".")[0]];
 
 // Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
 async function renew(runs) {
@@ -170,7 +250,11 @@ async function renew(runs) {
   }
   keep();
   await show();
-  for (const [name, { close }] of before) if (runs && close) made[name] ??= (await import(`./tabs/${name}.js`)).default(app);
+  for (const [name, { close }] of before) {
+    if (!runs || !close) continue;
+    const { default: make } = await import(`./tabs/${name}.js`); // meanwhile it may be shown
+    made[name] ??= make(app);
+  }
 }
 
 function reason(error) {
@@ -195,6 +279,7 @@ async function show() {
   view.setAttribute("aria-labelledby", `tab-${tab}`);
   document.title = `${titleOf(tab)} · rockflex`;
   refresh();
+  if (wrong) app.complain(made[tab].element, wrong);
 }
 
 function refresh(live = false) {
@@ -270,6 +355,7 @@ function copying() {
 themes();
 tabs();
 copying();
+undoing();
 printing(heading);
 try {
   app.about = await get("/api/about");

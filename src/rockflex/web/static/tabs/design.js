@@ -3,7 +3,8 @@
 import { Chart } from "../chart.js";
 import { measuresOf, unitOf } from "../choices.js";
 import { h, number, scrolled, symbol, tableOf } from "../dom.js";
-import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
+import { measures } from "../drawn.js";
+import { assumed, choices, recordsOf, Remarks, Study, undecided } from "../jobs.js";
 import { legend, look } from "../marks.js";
 import { t } from "../texts.js";
 import { inUnit, titled, unit, valueIn } from "../units.js";
@@ -75,12 +76,11 @@ export default function designTab(app) {
     for (const each of [...answer.curves, ...answer.answers]) each.tendon = t(each.tendon);
     drawing.hidden = !answer.curves.length;
     const curves = answer.curves.map((curve, i) => ({ ...curve, x: numbers(curve.half_width, "length"), look: look(i) }));
-    const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
-      .filter((each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome));
+    const found = answer.answers.map((each, i) => ({ ...each, color: look(i).color })).filter(met);
     // Through the width found too: between widths, logarithms of probabilities are interpolated.
     const through = (c) => {
-      const found = met.filter((each) => each.tendon === c.tendon).map((each) => [...numbers([each.half_width], "length"), choice().target]);
-      const all = [...numbers(c.probability).map((y, i) => [c.x[i], y]), ...found].sort(([a], [b]) => a - b);
+      const ends = found.filter((each) => each.tendon === c.tendon).map((each) => [...numbers([each.half_width], "length"), choice().target]);
+      const all = [...numbers(c.probability).map((y, i) => [c.x[i], y]), ...ends].sort(([a], [b]) => a - b);
       return { x: all.map(([x]) => x), y: all.map(([, y]) => y) };
     };
     chart.set({
@@ -90,22 +90,36 @@ export default function designTab(app) {
         ...curves.map((c) => ({ ...through(c), label: c.tendon, ...c.look, width: 2 })),
         ...curves.map((c) => (
           { kind: "points", x: c.x, y: numbers(c.probability), color: c.look.color, size: 3 })),
-        ...met.map((each) => (
+        ...found.map((each) => (
           { kind: "points", x: numbers([each.half_width], "length"), y: [choice().target], color: each.color, hollow: true, size: 7, width: 2 })),
       ],
       hlines: [{ y: choice().target, label: t("acceptable"), color: "muted" }],
       vlines: [
         { x: numbers([answer.present], "length")[0], label: t("present base"), color: "muted", dash: [2, 3] },
-        ...met.map((each) => ({ x: numbers([each.half_width], "length")[0], label: `B = ${inUnit(each.half_width, "length", 3)}`, color: each.color })),
+        ...found.map((each) => ({ x: numbers([each.half_width], "length")[0], label: `B = ${inUnit(each.half_width, "length", 3)}`, color: each.color })),
       ],
     });
     moments.set({ series: curves.map((c) => (
       { x: c.x, y: numbers(c.median_base_moment, "moment"), label: c.tendon, ...c.look })) });
     keys.replaceChildren(legend(curves.map((c) => ({ label: c.tendon, ...c.look }))));
-    if (answer.answers.length)
-      verdict.replaceChildren(...answer.answers.map((each) => sentence(each, answer.present)));
+    if (answer.status !== "done") verdict.textContent = answer.total ? undecided(answer) : "";
+    else if (answer.answers.length) verdict.replaceChildren(...answer.answers.map((each) => sentence(each, answer.present, used(each, answer))));
     table.replaceChildren(designs(curves));
     remarks.set([...new Set(answer.notes)].slice(0, 12));
+  }
+
+  // A button that gives the structure the width that was found, and its tendon.
+  function used(each, { present }) {
+    const { structure } = app.state;
+    const { B } = measures(structure, { half_width: present, heights: [1] }, app.about.kinds);
+    if (!met(each) || !B) return null;
+    const take = () => {
+      const next = B.set(each.half_width);
+      if (each.tendon_of) next.elements = [...(next.elements ?? []), { kind: "tendon", position: 0, ...each.tendon_of }];
+      app.change({ structure: next });
+      app.go("structure");
+    };
+    return h("button", { type: "button", onclick: take }, t("Use it"));
   }
 
   function refresh() {
@@ -125,8 +139,10 @@ export default function designTab(app) {
   return { element, refresh, close: (runs) => study.close(runs) };
 }
 
-// The result of a search for one tendon.
-function sentence(each, present) {
+const met = (each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome);
+
+// The result of a search for one tendon, and a button to use it.
+function sentence(each, present, use) {
   const [half, width, now, upper] = [each.half_width, 2 * each.half_width, 2 * present, 2 * each.half_width_upper].map((value) => inUnit(value, "length", 3));
   const values = { half, width, now, upper };
   const enough = each.half_width_upper
@@ -139,7 +155,7 @@ function sentence(each, present) {
     "not met": t("no base tried is wide enough (now {now}).", values),
   }[each.outcome];
   return h("p", { "data-tendon": each.tendon, "data-value": each.half_width },
-    h("b", {}, `${each.tendon}: `), said, each.note ? h("span", { class: "hint" }, ` ${each.note}`) : null);
+    h("b", {}, `${each.tendon}: `), said, each.note ? h("span", { class: "hint" }, ` ${each.note}`) : null, " ", use);
 }
 
 function designs(curves) {

@@ -175,7 +175,8 @@ export default function structureTab(app) {
     const asked = app.state.structure;
     if (!fast) results.classList.add("stale");
     const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
-    if (!answer) return;
+    shown.stale(!answer);
+    if (!answer) return shown.quick.refresh();
     shown.set({ ...answer, ...answer.run }, asked);
     if (fast) return;
     results.classList.remove("stale");
