@@ -10,7 +10,6 @@ from engine.test_systems import uncompiled
 from rockflex import InputError, SolverError
 from rockflex.engine import Event, LinearPhase, Run, StateLayout, System
 from rockflex.engine.batch import Batch
-from rockflex.engine.tables import MIRRORS, Mirror, tables_of
 
 
 @pytest.fixture(scope="module", params=["compiled", "Python"])
@@ -179,28 +178,6 @@ def test_the_order_of_the_states_does_not_matter(seed):
     assert len(plain.events) > 5
     np.testing.assert_allclose([e[0] for e in mixed.events], [e[0] for e in plain.events], rtol=1e-9)
     np.testing.assert_allclose(mixed.highest, plain.highest, rtol=1e-9)
-
-
-def test_a_phase_and_its_mirror_image_share_what_they_can():
-    """Their tables have the bits that they have alone, and others that differ in one number do not."""
-    rng = np.random.default_rng(1)
-    A, f, C = rng.normal(size=(1, 4, 4)), rng.normal(size=(1, 4)), rng.normal(size=(1, 3, 4))
-    c, none, mirrors = rng.normal(size=(1, 4)), np.zeros((1, 3)), list[Mirror]()
-    signs = np.array([1.0, -1.0, -1.0])[:, None]
-    softer, pushed = A.copy(), C.copy()
-    softer[0, 1, 2] *= 1.1
-    pushed[0, 2, 3] *= -1.0
-    for phase in (
-        LinearPhase(A, f, c, C, none, none),
-        LinearPhase(A, f, -c, signs * C, none, none),
-        LinearPhase(softer, f, c, C, none, none),
-        LinearPhase(A, f, c, pushed, none, none),
-        LinearPhase(A, -f, c, C, none, none),
-        LinearPhase(A, f, 2.0 * c, C, none, none),
-    ):
-        for shared, alone in zip(tables_of(phase, 0.02, mirrors), tables_of(phase, 0.02, []), strict=True):
-            assert np.array_equal(shared, alone)
-    assert len(mirrors) == MIRRORS
 
 
 @pytest.mark.parametrize("history", [False, True])

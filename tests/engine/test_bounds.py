@@ -7,8 +7,9 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import expm
 
 from rockflex.engine import Event, LinearPhase
+from rockflex.engine.loops import GROUP, Phases
 from rockflex.engine.shaken import shaken_of
-from rockflex.engine.tables import BLOCK, tables_of
+from rockflex.engine.tables import BLOCK, Tables, tables_in_row_groups, tables_of
 
 H, FINE = 0.02, 40  # time step, and places looked at in a sample
 
@@ -39,7 +40,7 @@ def test_bounds_of_a_block_hold(seed, turns, start):
     zero, one = np.zeros(1), np.ones(1)
     conditions = tuple(Event("", row[None], None, zero, zero, one) for row in C)
     stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], conditions)
-    tables = tables_of(stacked, H, [])
+    tables = tables_of(stacked, H)
     slopes = np.diff(a) / H
     parts = np.abs(tables.moves[0] @ np.array((*y, a[0], 1.0)))[: tables.bend.shape[2] - 2]
     moves = np.array((*parts[:n], np.abs(np.diff(a)).sum(), np.abs(slopes).max(), *parts[n:]))
@@ -90,7 +91,7 @@ def test_bounds_of_a_shaken_block_hold(seed, turns):
     )
     stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], events)
     shaken = {"A_v": A_v[None], "f_v": f_v[None], "C_v": C_v[None], "d_v": np.zeros((1, 4))}
-    tables = shaken_of(LinearPhase(**{**vars(stacked), **shaken}), H)
+    tables = shaken_of(LinearPhase(**{**vars(stacked), **shaken}), H, n)
     assert tables.places == fed
     first = A @ y + f * a[0] + c + f_v * lift[0] + A_v @ (lift[0] * y)
     seen = [np.zeros((0, n)) for _ in range(4)]
@@ -129,3 +130,30 @@ def test_bounds_of_a_shaken_block_hold(seed, turns):
     for order, values in enumerate(seen, 1):
         most = np.abs(values[:, fed]).max(axis=0)
         assert (most <= (getattr(tables, f"swell{order}")[0] @ moves)[:2] * (1.0 + 1e-6)).all()
+
+
+@pytest.mark.parametrize(("outputs", "conditions"), [(9, 2), (0, 1), (1, 0)])
+@pytest.mark.parametrize(
+    "turns", [(0.05,), (0.3, 1.2, 2.5), (0.1, 2.95), (0.2, 5.0, 60.0), (*np.arange(0.1, 0.8, 0.1), 4.0, 9.0)]
+)
+def test_the_compiled_tables_are_those_of_numpy(turns, outputs, conditions):
+    """Of all systems of a stack, of which the modes of one turn so far, and of the others farther."""
+    rng = np.random.default_rng(7)
+    A = np.array([phase_of(rng, np.multiply(turns, share)).A for share in (1.0, 1.03, 1.5)])
+    S, n, _ = A.shape
+    events = tuple(
+        Event("", rng.normal(size=(S, n)), None, rng.normal(size=S), rng.normal(size=S), np.ones(S))
+        for _ in range(conditions)
+    )
+    rest = [rng.normal(size=(S, *shape)) for shape in ((n,), (n,), (outputs, n), (outputs,), (outputs,))]
+    stack, known = LinearPhase(A, *rest, events), Phases(np.zeros(16), n)
+    known.add(0, stack, H)
+    found, places = known.content(0)
+    expected = tables_of(stack, H)
+    fast = expected.bend.shape[2] > n + 2
+    assert fast == (max(turns) > 2.0)
+    for name, table, place in zip(Tables._fields[4:], expected[4:], places, strict=False):
+        if name not in ("cap", "centre") or fast:
+            laid = tables_in_row_groups(table, GROUP)
+            size = np.abs(laid, where=laid < 1e299, out=np.zeros_like(laid)).max(initial=1e-300)
+            assert np.abs(found[:, place : place + laid.shape[1]] - laid).max(initial=0.0) < 1e-11 * size, name

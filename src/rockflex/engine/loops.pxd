@@ -81,6 +81,10 @@ cdef extern from "march.h" nogil:
         const double *nodes
         double length, a, rise, v, climb
     ctypedef void (*Rates)(void *field, const double *y, double a, double a_v, double *out, int counted) noexcept nogil
+    ctypedef struct Shape:
+        int n, outputs, rows, shift, parts
+        double h
+    ctypedef void (*Eigen)(char *left, char *right, int *n, double *A, int *w, double *real, double *imaginary, double *lefts, int *wl, double *rights, int *wr, double *room, int *size, int *wrong) noexcept nogil
     ctypedef struct Loops:
         const char *level
         int group
@@ -98,6 +102,10 @@ cdef extern from "march.h" nogil:
         void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out) noexcept nogil
         void (*within)(const Phase *p, const Step *s, int stage) noexcept nogil
         void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series) noexcept nogil
+        size_t (*room)(const Shape *s) noexcept nogil
+        double (*turn)(const Shape *s, const double *rates, double *memory) noexcept nogil
+        int (*fast_modes)(const Shape *s, const double *rates, Eigen solve, double *memory, double *modes) noexcept nogil
+        int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory, const Py_ssize_t *places, double *to) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
 
@@ -139,6 +147,7 @@ cdef class Phases:
     cdef bint has_tables(self, int place, bint shakes) noexcept nogil
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
+    cdef int parts(self, int place) noexcept nogil
     cdef int shift(self, int place, (double, double) v) noexcept nogil
     cdef double scale(self, int place, int event) noexcept nogil
     cdef int following(self, int place, int outcome) noexcept nogil

@@ -4,13 +4,21 @@ import os
 
 import cython
 import numpy as np
+from cython.cimports.cpython.pycapsule import PyCapsule_GetName, PyCapsule_GetPointer
 from cython.cimports.libc.math import INFINITY
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import failures, tableau
-from rockflex.engine.system import up8
-from rockflex.engine.tables import jump_table, tables_in_row_groups
+from rockflex.engine.system import LinearPhase, up8
+from rockflex.engine.tables import (
+    FAST,
+    jump_table,
+    rates_and_rows,
+    shift_of,
+    tables_in_row_groups,
+    tables_of_nonlinear_phase,
+)
 
 LEVELS = ("", "baseline", "v3", "v4")
 
@@ -24,7 +32,7 @@ def chosen_level():
 
 
 LOOPS = cython.declare(cython.pointer(cython.const[Loops]), rockflex_loops(chosen_level()))
-LEVEL = LOOPS.level.decode()
+LEVEL, GROUP = LOOPS.level.decode(), LOOPS.group
 
 NODES = cython.declare(cython.double[::1], tableau.C)
 WEIGHTS = cython.declare(cython.double[:, ::1], tableau.SUMS)
@@ -159,30 +167,36 @@ class Phases:
         self.release(place)
         return size
 
+    def content(self, place: cython.int):
+        """The tables of a phase, each system's in a row, and where each begins."""
+        return self.contents[place][0], self.offsets[place]
+
     def has_tables(self, place, shakes):
         """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
         return self.known[place] > shakes
 
-    def add(self, place: cython.int, tables, events, h):
-        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked.
+    def add(self, place: cython.int, found, h):
+        """Prepare a phase; of each of its events it is not known yet what follows, or known to be the end, or asked.
 
         Returns the memory of its tables in bytes.
         """
         size: cython.Py_ssize_t = (place + 1) * cython.sizeof(Phase)
+        events = found.events
         count: cython.int = len(events)
-        systems = tables.halvings.size
+        systems = len(found.C)
         outcomes = [outcome for event in events for outcome in (event, event.rest)]
         jumps = [
             outcome.jump if isinstance(getattr(outcome, "jump", None), np.ndarray) else None for outcome in outcomes
         ]
         rests = [event.rest for event in events]
-        parts = [
-            *(tables_in_row_groups(each, LOOPS.group) for each in tables[4:]),
+        more = [
             np.array([event.scale for event in events]).reshape(count, systems).T,
-            *(jump_table(J, LOOPS.group) for J in jumps if J is not None),
+            *(jump_table(J, GROUP) for J in jumps if J is not None),
             *(conditions_of(rest) for rest in rests if rest is not None),
         ]
-        content, offsets = joined(parts)
+        shape: Shape
+        shape.h = h
+        content, offsets, halvings = tables_of_phase(found, cython.address(shape), more)
         if place == self.count:
             self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
             self.contents.append(None)
@@ -192,9 +206,8 @@ class Phases:
                 self.known = np.concatenate((self.known, np.zeros(place, dtype=np.intc)))
             self.count += 1
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, tables.outputs, tables.rows
-        phase.tables.shift = tables.shift
-        phase.tables.parts, phase.tables.h = tables.bend.shape[2] - 2, h
+        phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, shape.outputs, shape.rows
+        phase.tables.shift, phase.tables.parts, phase.tables.h = shape.shift, shape.parts, h
         phase.tables.shaken.now = cython.NULL
         phase.events = count
         phase.jump = cython.cast(
@@ -217,7 +230,7 @@ class Phases:
         for k in range(count):
             if isinstance(events[k].jump, Jump):
                 phase.leaps[k] = cython.cast(cython.p_void, events[k].jump)
-        self.contents[place], self.offsets[place] = (content, tables.halvings, jumps, rests, events), offsets
+        self.contents[place], self.offsets[place] = (content, halvings, jumps, rests, events), offsets
         self.known[place] = 1
         return content.nbytes
 
@@ -229,7 +242,7 @@ class Phases:
         self.known[place] = 2
         if shaken is None:
             return 0
-        content, offsets = joined([tables_in_row_groups(each, LOOPS.group) for each in shaken[3:]])
+        content, offsets = joined([tables_in_row_groups(each, GROUP) for each in shaken[3:]])
         self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
         self.bind_system(place, which)
         return content.nbytes
@@ -324,6 +337,10 @@ class Phases:
     def halvings(self, place):
         """How often the step must be halved so that power series converge."""
         return self.phases[place].halvings
+
+    def parts(self, place):
+        """Number of parts of y', whose magnitudes bound the rows."""
+        return self.phases[place].tables.parts
 
     def shift(self, place, v):
         """Number of first states whose rates are as many states after them."""
@@ -535,10 +552,126 @@ def conditions_of(rest):
 
 def joined(parts):
     """The parts in one array, each from a line of the cache on; and where they begin."""
-    places, rows = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp), len(parts[0])
-    room = np.zeros(rows * int(places[-1]) + 8)
-    first = -(room.ctypes.data // 8) % 8
-    content = room[first : first + rows * int(places[-1])].reshape(rows, -1)
-    for part, place in zip(parts, places[:-1], strict=True):
-        content[:, place : place + part.shape[1]] = part
+    content, places = room_for([part.shape[1] for part in parts], len(parts[0]))
+    fill(content, places, parts)
     return content, places
+
+
+def room_for(sizes, systems):
+    """An array with room for parts of these sizes of every system, each from a line of the cache on; their places."""
+    places = np.cumsum([0, *map(up8, sizes)], dtype=np.intp)
+    room = np.zeros(systems * int(places[-1]) + 8)
+    first = -(room.ctypes.data // 8) % 8
+    return room[first : first + systems * int(places[-1])].reshape(systems, -1), places
+
+
+def fill(content, places, parts):
+    """Put the parts at their places."""
+    for part, place in zip(parts, places, strict=False):
+        content[:, place : place + part.shape[1]] = part
+
+
+@cython.cfunc
+def tables_of_phase(found, shape: cython.pointer(Shape), more):
+    """The tables of a stack of phases, each system's in a row, and more parts; their places; the halvings."""
+    if not isinstance(found, LinearPhase):
+        known = tables_of_nonlinear_phase(found)
+        shape.n, shape.outputs, shape.rows, shape.shift = found.C.shape[2], known.outputs, known.rows, known.shift
+        shape.parts = 0
+        return *joined([*(tables_in_row_groups(each, GROUP) for each in known[4:]), *more]), known.halvings
+    rates, rows = rates_and_rows(found)
+    shape.n, shape.outputs, shape.rows, shape.shift = rates.shape[1], found.d.shape[1], rows.shape[1], shift_of(rates)
+    return prepared(rates, rows, shape, more)
+
+
+@cython.cfunc
+def prepared(
+    rates: cython.const[cython.double][:, :, ::1],
+    rows: cython.const[cython.double][:, :, ::1],
+    shape: cython.pointer(Shape),
+    more,
+):
+    """The tables of a stack of linear phases, from [A f c] and the rows [C d e]."""
+    systems: cython.int = rates.shape[0]
+    n: cython.int = shape.n
+    k: cython.int
+    most: cython.int = 0
+    fast: cython.bint = False
+    solve: Eigen
+    given: cython.p_const_double = cython.address(rates[0, 0, 0])
+    seen: cython.p_const_double = cython.address(rows[0, 0, 0]) if rows.shape[1] else given
+    wide: cython.Py_ssize_t = n * (n + 2)
+    tall: cython.Py_ssize_t = shape.rows * (n + 2)
+    of_modes: cython.Py_ssize_t = n * (2 + 4 * n)
+    shape.parts = n
+    memory: cython.double[::1] = np.empty(LOOPS.room(shape))
+    room: cython.p_double = cython.address(memory[0])
+    counts: cython.int[::1] = np.zeros(systems, dtype=np.intc)
+    modes: cython.double[::1] = memory
+    for k in range(systems):
+        if LOOPS.turn(shape, given + k * wide, room) > FAST:
+            counts[k], fast = 1, True
+    if fast:
+        solver = eigen_solver()
+        solve = cython.cast(Eigen, PyCapsule_GetPointer(solver, PyCapsule_GetName(solver)))
+        modes = np.empty(systems * of_modes)
+        with cython.nogil:
+            for k in range(systems):
+                if counts[k] > 0:
+                    counts[k] = LOOPS.fast_modes(
+                        shape, given + k * wide, solve, room, cython.address(modes[k * of_modes])
+                    )
+                most = max(most, counts[k])
+        shape.parts += 2 * most
+        memory = np.empty(LOOPS.room(shape))
+        room = cython.address(memory[0])
+    content, offsets = room_for([*sizes_of(shape), *(part.shape[1] for part in more)], systems)
+    fill(content, offsets[14:], more)
+    halvings = np.zeros(systems, dtype=np.intc)
+    found: cython.int[::1] = halvings
+    tables: cython.double[:, ::1] = content
+    places: cython.Py_ssize_t[::1] = offsets
+    with cython.nogil:
+        for k in range(systems):
+            found[k] = LOOPS.prepare(
+                shape,
+                given + k * wide,
+                seen + k * tall,
+                counts[k],
+                cython.address(modes[k * of_modes if fast else 0]),
+                room,
+                cython.address(places[0]),
+                cython.address(tables[k, 0]),
+            )
+    return content, offsets, halvings
+
+
+@cython.cfunc
+def sizes_of(shape: cython.pointer(Shape)):
+    """The sizes of the tables of a linear phase, as in `march.h`."""
+    n, m, rows, parts = shape.n, shape.outputs, shape.rows, shape.parts
+    later, bounds, now = n + AHEAD + 2, parts + 2, up8(n - shape.shift + rows - m) * (n + 2)
+    fast = 1 if parts > n else 0
+    return [
+        (up8(AHEAD * rows) + up8(n)) * later,
+        up8(n) * (n + 3),
+        up8(parts) * (n + 2),
+        now,
+        up8(m) * (n + 2),
+        up8((AHEAD + 1) * rows) * later,
+        up8(rows) * bounds,
+        up8(rows) * bounds * fast,
+        up8((AHEAD + 1) * rows) * later * fast,
+        up8(rows) * bounds,
+        up8(rows - m) * bounds,
+        up8(rows),
+        now,
+        up8(m) * (n + 2),
+    ]
+
+
+def eigen_solver():
+    """That of LAPACK, which comes with SciPy."""
+    from scipy.linalg import cython_lapack
+
+    return cython_lapack.__pyx_capi__["dgeev"]

@@ -8,8 +8,8 @@ import numpy as np
 from rockflex.engine.field import Field
 from rockflex.engine.shaken import ShakenTables
 from rockflex.engine.steps_twin import Steps
-from rockflex.engine.system import Event, up8
-from rockflex.engine.tables import AHEAD, BLOCK, Tables
+from rockflex.engine.system import Event, LinearPhase, NonlinearPhase, up8
+from rockflex.engine.tables import AHEAD, BLOCK, Tables, tables_of, tables_of_nonlinear_phase
 from rockflex.foundation.arrays import Array
 
 UNKNOWN, ENDS, ASKED = -1, -2, -3
@@ -113,9 +113,10 @@ class Phases(Steps):
         self.phases: list[PhaseLoops] = []
         self.known: list[int] = []  # of each phase: 0 if its tables are forgotten, 2 if it has those when shaken
 
-    def add(self, place: int, tables: Tables, events: Sequence[Event], h: float) -> int:
-        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
-        self.phases[place : place + 1] = [PhaseLoops(tables, events, h)]
+    def add(self, place: int, found: LinearPhase | NonlinearPhase, h: float) -> int:
+        """Prepare a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
+        tables = tables_of(found, h) if isinstance(found, LinearPhase) else tables_of_nonlinear_phase(found)
+        self.phases[place : place + 1] = [PhaseLoops(tables, found.events, h)]
         self.known[place : place + 1] = [1]
         return sum(each.nbytes for each in tables[4:])
 
@@ -134,6 +135,10 @@ class Phases(Steps):
         del which
         self.phases[place].shaken, self.known[place] = shaken, 2
         return 0
+
+    def parts(self, place: int) -> int:
+        """Number of parts of y', whose magnitudes bound the rows."""
+        return self.phases[place].tables.bend.shape[2] - 2
 
     def acts(self, place: int, v: Climb) -> ShakenTables | None:
         """What a phase has under a vertical acceleration and its change; None if that does not act."""

@@ -599,6 +599,8 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
 }
 
 #include "steps.h"
+#include "prepare.h"
 
 const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, amounts, spread,
-                                            reach, complete, magnitudes, march, attempt, look, within, bend};
+                                            reach, complete, magnitudes, march, attempt, look, within, bend,
+                                            room, turn, fast_modes, prepare};

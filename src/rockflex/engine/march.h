@@ -111,6 +111,15 @@ typedef struct { /* a step of a phase that is not linear */
 /* y' = F(y, a, a_v), as `Field.rates`. */
 typedef void (*Rates)(void *field, const double *y, double a, double a_v, double *out, int counted);
 
+typedef struct { /* a phase of which tables are to be made; of `Tables`, and the step */
+    int n, outputs, rows, shift, parts;
+    double h;
+} Shape;
+
+/* dgeev of LAPACK: roots and vectors of a matrix. */
+typedef void (*Eigen)(char *left, char *right, int *n, double *A, int *w, double *real, double *imaginary, double *lefts,
+                      int *wl, double *rights, int *wr, double *room, int *size, int *wrong);
+
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
@@ -129,6 +138,11 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out);
     void (*within)(const Phase *p, const Step *s, int stage);
     void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series);
+    size_t (*room)(const Shape *s); /* doubles */
+    double (*turn)(const Shape *s, const double *rates, double *memory);
+    int (*fast_modes)(const Shape *s, const double *rates, Eigen solve, double *memory, double *modes);
+    int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
+                   const ptrdiff_t *places, double *to);
 } Loops;
 
 /* Those of the best level that this processor has, or of the named one; null if it has not. */

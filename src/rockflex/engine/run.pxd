@@ -24,7 +24,6 @@ cdef class Run:
     cdef long long clock
     cdef dict places  # of the phases, by their keys
     cdef PhaseDecay decay
-    cdef list mirrors  # of the last phases, see `tables_of`
     cdef Phases phases
     cdef int now  # place of the present phase
     cdef int n

@@ -15,7 +15,6 @@ from rockflex.engine.rest import PhaseDecay
 from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
-from rockflex.engine.tables import prepared_phase_and_tables
 from rockflex.foundation.errors import InputError
 
 if cython.compiled:
@@ -78,7 +77,7 @@ class Run:
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
+        self.system, self.h, self.met, self.places = system, h, [], {}
         self.used, self.clock, self.memory = np.zeros(16, dtype=np.int64), 0, MEMORY
         self.n, self.outputs, self.states = system.layout.size, len(system.outputs), up8(system.layout.size + 2)
         self.stretch = STRETCH
@@ -189,8 +188,7 @@ class Run:
     def size(self):
         """Memory of phases, history and room, bytes."""
         room = [self.scratch, self.phases.rows, self.phases.found, self.series.series]
-        more = sum([mirror.nbytes for mirror in self.mirrors]) + sum([each.nbytes for each in room])
-        return self.phase_bytes + self.journal.size() + self.peaks_.size + more
+        return self.phase_bytes + self.journal.size() + self.peaks_.size + sum([each.nbytes for each in room])
 
     def trim(self):
         """Give back the room of a long history, which must have been read; that of a short one serves the next run."""
@@ -228,16 +226,16 @@ class Run:
         if not self.phases.has_tables(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            tables = shaken_of(self.met[place][1], self.h)
+            tables = shaken_of(self.met[place][1], self.h, self.phases.parts(place))
             self.phase_bytes += self.phases.set_vertical_tables(place, self.which, tables)
         return 0
 
     def prepare(self, key, place):
         """Prepare a phase, and return its place."""
-        phase, tables = prepared_phase_and_tables(self.system, key, self.h, self.mirrors)
+        phase = self.system.checked(key)
         if self.phase_bytes > self.memory:
             self.forget()
-        self.phase_bytes += self.phases.add(place, tables, phase.events, self.h) + phase.nbytes
+        self.phase_bytes += self.phases.add(place, phase, self.h) + phase.nbytes
         if isinstance(phase, NonlinearPhase):
             self.phases.set_field(place, phase.field, phase.scale, phase.counted)
             self.flow.know(phase, place)
@@ -247,8 +245,9 @@ class Run:
         if place == self.used.shape[0]:
             self.used = np.concatenate((self.used, np.zeros(place, dtype=np.int64)))
         self.series.widen(len(phase.events))
-        self.peaks_.widen(tables.rows)
-        self.stretch = min(self.stretch, STRETCH // (PER_SAMPLE + self.n * (self.n + tables.rows) // 4))
+        rows = self.outputs + len(phase.events)
+        self.peaks_.widen(rows)
+        self.stretch = min(self.stretch, STRETCH // (PER_SAMPLE + self.n * (self.n + rows) // 4))
         self.journal.register_phase(place, phase.events)
         return place
 

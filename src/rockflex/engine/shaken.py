@@ -25,7 +25,7 @@ from rockflex.engine.tables import (
     padded,
     shift_of,
     spectral_radius_bound,
-    tables_of,
+    steps_of,
 )
 from rockflex.foundation.arrays import Array, Bools
 
@@ -103,22 +103,26 @@ def terms_of(phase: LinearPhase | NonlinearPhase) -> Terms | None:
     return Terms(places, np.concatenate((rates, more[:, :n]), axis=2), np.concatenate((rows, more[:, n:]), axis=2))
 
 
-def shaken_of(phase: LinearPhase | NonlinearPhase, h: float) -> ShakenTables | None:
-    """Compute what a stack of phases has for steps of h; None if the vertical acceleration does not act in them."""
+def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, parts: int) -> ShakenTables | None:
+    """Compute what a stack of phases has for steps of h; None if the vertical acceleration does not act in them.
+
+    So many `parts` of y' bound its rows without that.
+    """
     terms = terms_of(phase)
     if terms is None:
         return None
     if isinstance(phase, NonlinearPhase):
         return shaken_rows(phase, terms)
     m, (S, n, columns), fed = phase.d.shape[1], terms.rates.shape, len(terms.places)
-    shift, rates, rows, tables = shift_of(terms.rates), terms.rates, terms.rows, tables_of(phase, h, [])
-    step, parts = tables.step[:, :n], tables.bend.shape[2] - 2
+    shift, rates, rows = shift_of(terms.rates), terms.rates, terms.rows
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
     C, speeds = rows[..., :n], rates[:, terms.places]
     moves = np.zeros((S, parts, columns))
     moves[:, :n] = rates
     fast, marches = spectral_radius_bound(phase.A * h), fed <= MAX_FED
     pieces = np.where((fast <= FAST) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
+    turns = halvings_of(fast, 1.0)
+    step = np.concatenate([steps_of(rates[k : k + 1, :, : n + 2], h, int(turns[k])) for k in range(S)])
     found = marched_of(terms, h, step, pieces)
     found |= shaken_bound_factors(terms, h, m, parts, pieces)
     slope = np.concatenate((by_rows(C, rates), np.zeros((S, rows.shape[1], fed))), axis=2)

@@ -1,13 +1,12 @@
-"""The matrices of a phase for one time step, for a stack of systems at once."""
+"""The matrices of a phase for one time step in NumPy, as `prepare.h` makes them."""
 
 from itertools import pairwise
-from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, System, up8
+from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
 from rockflex.foundation.arrays import Array
 
 AHEAD, BLOCK = 4, 16  # as in march.h
@@ -18,9 +17,6 @@ ENDLESS = -1  # for `halvings`: no step is short enough, as the motion overflows
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
-MIRRORS = 4  # phases that may have a mirror image yet to come
-# Two threads that prepare at once pass the interpreter's lock to and fro, in every second call of NumPy.
-PREPARING = RLock()
 AT_ONCE = 4096  # entries of rows at several places of a block that fit into the cache, before they are doubled
 VAGUE = 1e300  # a bound that is as good as none, and does not overflow
 
@@ -48,100 +44,55 @@ class Tables(NamedTuple):
     most: Array
 
 
-class Mirror(NamedTuple):
-    """A phase, and what its mirror image shares with it: bases that rock about their other edge."""
-
-    A: Array
-    f: Array
-    c: Array
-    C: Array  # of outputs and conditions
-    step: Array
-    bounds: tuple[Array, Array, Array]  # bend, sway and jolt
-
-    def sign(self, A: Array, f: Array, c: Array, C: Array) -> int:
-        """1 if this is the same motion, -1 with c reversed, and with any rows reversed; 0 if it is another one."""
-        if A.shape != self.A.shape or not (np.array_equal(A, self.A) and np.array_equal(f, self.f)):
-            return 0
-        if C.shape != self.C.shape or not ((self.C == C).all(axis=2) | (self.C == -C).all(axis=2)).all():
-            return 0
-        return 1 if np.array_equal(c, self.c) else -1 if np.array_equal(c, -self.c) else 0
-
-    @property
-    def nbytes(self) -> int:
-        """Memory beside that of the phase, in bytes."""
-        return sum(each.nbytes for each in (self.step, *self.bounds))
+def rates_and_rows(phase: LinearPhase) -> tuple[Array, Array]:
+    """[A f c], and [C d e] of outputs and conditions."""
+    (_, m, n), k = phase.C.shape, len(phase.events)
+    rates = np.concatenate((phase.A, phase.f[..., None], phase.c[..., None]), axis=2)
+    rows = np.zeros((len(rates), m + k, n + 2))
+    rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
+    for j, event in enumerate(phase.events, m):
+        rows[:, j, :n], rows[:, j, n], rows[:, j, n + 1] = event.row, event.direct, event.constant
+    return rates, rows
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
-    """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others.
-
-    `mirrors` are some earlier phases for the same h; this one is added.
-    """
-    A, f, c = phase.A, phase.f, phase.c
-    (S, n), m, k = f.shape, phase.d.shape[1], len(phase.events)
-    rates = np.concatenate((A, f[..., None], c[..., None]), axis=2)
-    rows = np.zeros((S, m + k, n + 2))
-    rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
-    for row, event in zip(rows[:, m:].swapaxes(0, 1), phase.events, strict=True):
-        row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
-    C = rows[..., :n]
-
-    turn = spectral_radius_bound(A * h)
-    halvings, squared = halvings_of(turn, np.array([[LONGEST], [1.0]]))
+def tables_of(phase: LinearPhase, h: float) -> Tables:
+    """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others."""
+    rates, rows = rates_and_rows(phase)
+    (S, n, _), R, m = rates.shape, rows.shape[1], phase.d.shape[1]
+    A, f, C, turn = phase.A, phase.f, rows[..., :n], spectral_radius_bound(phase.A * h)
     splits = [split_fast_modes(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
     most = max((len(each.parts) for each in splits if each is not None), default=0)
-    slow, driven = A.copy(), f.copy()
-    moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
-    jolt = np.full((S, k, n + 2 + most), VAGUE)
+    moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, R, n + 2 + most))
+    jolt, step = np.zeros((S, R - m, n + 2 + most)), np.empty((S, n, n + 3))
     moves[:, :n] = np.eye(n)
     centre = rows.copy()
     for place, each in enumerate(splits):
+        one, slow, driven = slice(place, place + 1), A[place], f[place]
         if each is not None:
             end = n + len(each.parts)
-            slow[place], driven[place], moves[place, :n], moves[place, n:end] = each[:4]
-            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = by_rows(each.cap, each.push), each.cap
-            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = by_rows(each.sway, each.push), each.sway
+            slow, driven, moves[place, :n], moves[place, n:end] = each[:4]
+            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = each.cap @ each.push, each.cap
+            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = each.sway @ each.push, each.sway
             sway[place, :, n + 1] += each.jerk
-            centre[place] -= by_rows(each.swing, rates[place])
-    parted = np.array([each is not None for each in splits])
-    fine = np.minimum(halvings_of(spectral_radius_bound(np.abs(slow) * h), 1.0), FINEST)
-    G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
-    G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
-    step = np.empty((S, n, n + 3))
-    mirror, sign = next(((each, sign) for each in mirrors if (sign := each.sign(A, f, c, C))), (None, 0))
-    if mirror is not None:
-        step[...], (bend, sway, jolt) = mirror.step, mirror.bounds
-        step[..., -1] *= sign
-    else:
-        kinds = {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}
-        for kind in kinds:
-            alike = (squared == kind[0]) & (fine == kind[1]) & (parted == kind[2])
-            some: Any = np.flatnonzero(alike) if len(kinds) > 1 else slice(None)
-            changes = exponentials_less_identity(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
-            whole = changes[0][:, :n]
-            step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
-            step[some, :, n] -= whole[..., n + 1]
-            of_states = (
-                exponentials_less_identity(slow[some] * h, kind[1] + 1)
-                if kind[2]
-                else [each[:, :n, :n] for each in changes]
-            )
-            found = derivative_bound_factors(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
-            bend[some, :, : n + 2] = found[0]
-            sway[some, :, : n + 2] += found[1]
-            if not kind[2]:
-                jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
-        if not most:
-            mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
-    changes = state_changes_at_samples(step)
-    shift = shift_of(rates)
+            centre[place] -= each.swing @ rates[place]
+            jolt[place] = VAGUE
+        fine = int(min(halvings_of(spectral_radius_bound(np.abs(slow[None]) * h)[0], 1.0), FINEST))
+        step[one] = steps_of(rates[one], h, int(halvings_of(turn[place], 1.0)))
+        changes = exponentials_less_identity(slow[None] * h, fine + 1)[1:]
+        found = derivative_bound_factors(slow[None], driven[None], C[one], m, changes, h)
+        bend[one, :, : n + 2] = found[0]
+        sway[one, :, : n + 2] += found[1]
+        if each is None:
+            jolt[one, :, : n + 2] = found[2]
+    changes, shift = state_changes_at_samples(step), shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
+    endless = ~np.isfinite(step).all(axis=(1, 2))
     return Tables(
         outputs=m,
-        rows=m + k,
+        rows=R,
         shift=shift,
-        halvings=halvings.astype(np.intc),
+        halvings=np.where(endless, ENDLESS, halvings_of(turn, LONGEST)).astype(np.intc),
         block=np.concatenate((rows_at_samples(rows, changes, 1), padded(changes[:, -1])), axis=1),
         step=padded(step),
         moves=padded(moves @ rates),
@@ -150,7 +101,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         slope=rows_at_samples(by_rows(C, rates), changes, 0),
         bend=padded(bend),
         cap=padded(cap),
-        centre=rows_at_samples(centre, changes if most else changes[:, :1], 0),
+        centre=rows_at_samples(centre, changes, 0),
         sway=padded(sway),
         jolt=padded(jolt),
         direct=padded(rows[:, :, n, None]),
@@ -159,22 +110,15 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     )
 
 
-def prepared_phase_and_tables(
-    system: System, key: Key, h: float, mirrors: list[Mirror]
-) -> tuple[LinearPhase | NonlinearPhase, Tables]:
-    """Return the phase of a key, and its tables for steps of h.
-
-    Where the motion of a system overflows within a step, its `halvings` are `ENDLESS`.
-    """
-    with PREPARING:
-        phase = system.checked(key)
-        if isinstance(phase, NonlinearPhase):
-            return phase, tables_of_nonlinear_phase(phase)
-        tables = tables_of(phase, h, mirrors)
-    endless = ~np.isfinite(tables.step).all(axis=(1, 2))
-    if endless.any():
-        tables = tables._replace(halvings=np.where(endless, ENDLESS, tables.halvings).astype(np.intc))
-    return phase, tables
+def steps_of(rates: Array, h: float, halvings: int) -> Array:
+    """The changes of the states in one sample, from y, the accelerations at its ends, and 1."""
+    S, n, _ = rates.shape
+    G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
+    G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2] = rates[..., :n] * h, rates[..., n] * h, rates[..., n + 1] * h
+    G[:, n, n + 1] = 1.0
+    step = exponentials_less_identity(G, halvings)[0][:, :n]
+    step[..., n] -= step[..., n + 1]
+    return step
 
 
 def tables_of_nonlinear_phase(phase: NonlinearPhase) -> Tables:

@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from threading import Lock
@@ -385,15 +385,16 @@ def _spread(values: Any, places: Sequence[int], count: int) -> Any:
     return found
 
 
-def share_solvers(engines: Iterable[PreparedModel]) -> None:
-    """Let engines of many models that differ only in numbers share their preparation."""
+def share_solvers(engines: Mapping[PreparedModel, Iterable[float]]) -> None:
+    """Let engines of many models that differ only in numbers share their preparation, for their time steps."""
     with _GATHERING:  # two threads may gather the same engines
-        alike = defaultdict[tuple[int, ...], list[PreparedModel]](list)
-        for each in engines:
+        alike = defaultdict[tuple[object, ...], list[PreparedModel]](list)
+        for each, steps in engines.items():
             if each.model.integrated or not each.model.has_bare_base:
                 continue
             if may_stack(each.model) and "pool" not in vars(each):
-                alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
+                kind = each.model.properties.n_modes, len(each.quantities), each.model.lifts, frozenset(steps)
+                alike[kind].append(each)
         for some in alike.values():
             most = max(1, min(STACK, MEMORY // some[0].size_of_plain))
             for first in range(0, len(some), most):

@@ -1,6 +1,6 @@
 """One run: the options, a model tied to its structure, and the peaks of several such runs as columns."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
@@ -275,14 +275,18 @@ def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
     )
 
 
-def share_case_preparation(cases: Iterable[PreparedCase | InputError]) -> None:
-    """Let those of many cases that differ only in numbers share their preparation."""
-    share_solvers(dict.fromkeys(case.engine for case in cases if isinstance(case, PreparedCase)))
+def share_case_preparation(runs: Iterable[Scaled]) -> None:
+    """Let the cases of many runs that differ only in numbers, and have the same time steps, share their preparation."""
+    steps = defaultdict[PreparedModel, set[float]](set)
+    for case, motion, _ in runs:
+        if isinstance(case, PreparedCase):
+            steps[case.engine].add(motion.dt)
+    share_solvers(steps)
 
 
 def solutions_of_runs(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
     """Run motions, each at a scale on a case without history, together where that can be."""
-    share_case_preparation(case for case, *_ in runs)
+    share_case_preparation(runs)
     found = dict[int, Solution | InputError | SolverError]()
     failures = dict[int, InputError | SolverError]()
     for places, solutions in _solutions_by_group(runs, failures):
@@ -296,7 +300,7 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
 
     Unless engines are to `keep` their tables for further runs, each releases them as soon as its runs have ended.
     """
-    share_case_preparation(case for case, *_ in runs)
+    share_case_preparation(runs)
     columns, left = dict[str, NDArray[Any]](), Counter(case for case, *_ in runs)
     failures, responses = dict[int, InputError | SolverError](), dict[int, Response]()
     for places, solutions in _solutions_by_group(runs, failures):
