@@ -8,6 +8,8 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from drawing import drawn
+from rockflex.structure._base_element import BaseElement
+from rockflex.structure._branches import ElementTension, WithoutMemory
 
 FRAME = make_frame(n_stories=2, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
 PULSE = rf.one_sine_pulse(amplitude=3.0, period=0.8)
@@ -60,6 +62,46 @@ class SteelBar(rf.ElementLaw):
     def scaled(self, factor, *, size):
         stiffness = self.stiffness * (factor if size else 1.0)
         return replace(self, stiffness=stiffness, yield_force=self.yield_force * factor) if factor else None
+
+
+@dataclass(frozen=True)
+class BufferBranch(WithoutMemory):
+    stiffness: float
+    coefficient: float
+    position: float | None
+    rate_dependent = True
+
+    def tension(self, branch):
+        return ElementTension(self.stiffness, self.coefficient)
+
+    def stored_energy(self, elongation, force, plastic):
+        return 0.5 * self.stiffness * elongation**2
+
+    def lost_energy(self, elongation, force, plastic, stored, sweep):
+        return self.coefficient * sweep
+
+
+@dataclass(frozen=True)
+class Buffer(BaseElement):
+    """A spring with a dashpot beside it, which no branches of an `ElementLaw` give."""
+
+    stiffness: float
+    coefficient: float
+    position: float = 0.0
+    rate_dependent = dissipates = True
+
+    @property
+    def largest_stiffness(self):
+        return self.stiffness
+
+    def branched(self):
+        return BufferBranch(self.stiffness, self.coefficient, self.place)
+
+    def slow_force(self, elongation):
+        return self.stiffness * elongation
+
+    def extremes(self, low, high, speed=0.0):
+        return self.stiffness * max(high, -low) + self.coefficient * speed, False
 
 
 BAR = SteelBar(K, LIMIT, RATIO, 0.3, rupture_elongation=BREAKS)
@@ -131,6 +173,20 @@ def test_answers_fit_together(element):
         assert twice.slow_force(0.004) == pytest.approx(2.0 * element.slow_force(0.004), rel=1e-12)
     else:
         assert element.scaled(0.0, size=True) is element
+
+
+GROUNDS = [None, rf.Ground(friction=0.5), rf.Ground(springs=rf.Springs([-0.5, 0.5], 3e8, 1e6), base_inertia=2e4)]
+
+
+@pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C"])
+@pytest.mark.parametrize("ground", GROUNDS, ids=["rigid", "sliding", "springs"])
+def test_a_new_element_needs_no_more_than_its_answers(model, ground):
+    """It is a bar and a damper at the same place, on any ground and in any model."""
+    elements = ([Buffer(2e6, 2e5)], [rf.GapBar(2e6, 0.0, both_ways=True), rf.ViscousDamper(2e5)])
+    one, two = (rf.simulate(rf.Restrained(FRAME, each), PULSE, model, ground=ground) for each in elements)
+    assert one.max_rotation == pytest.approx(two.max_rotation, rel=1e-9)
+    assert one.element_energy.sum() == pytest.approx(two.element_energy.sum(), rel=1e-7)
+    assert abs(one.energy.residual).max() < 1e-8 * one.energy.input.max()
 
 
 def test_a_damper_without_force_neither_sticks_nor_slides():

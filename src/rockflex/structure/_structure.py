@@ -211,8 +211,8 @@ class Restrained(ModifiedStructure):
     ----------
     structure
         Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
-    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
-        Any number of them, at any positions within the base.
+    elements : tuple of elements
+        Any number, such as a `Tendon` or a `YieldingDissipator`, at any positions within the base.
 
     Raises
     ------
