@@ -22,7 +22,7 @@ HEADINGS = ("x_end", "slip_end", "slip left")  # of the slip that is left, today
 LAWS = {"VVELSimplified", "VVELComplete", "Restitution", "SidedRestitution"}
 ELEMENTS = {
     "Tendon", "YieldingDissipator", "ViscousDamper", "FrictionDamper", "ElementLaw", "BaseElement", "Attachment",
-    "YieldingStory", "FrictionElement",
+    "YieldingStory", "Element", "ElasticElement", "ViscousElement", "YieldingElement", "FrictionElement", "LawElement",
 }  # fmt: skip
 BASES = {"Ground", "GivenGround", "Springs", "SlidingModel", "SpringModel"}
 # What runs are the product of, by the words with which loops and products name them.

@@ -42,7 +42,7 @@ from rockflex.models._state_layout import (
     n_branch_codes,
     state_layout_of,
 )
-from rockflex.structure._branches import Element, ViscousElement
+from rockflex.structure._branches import Element
 from rockflex.structure._ground import Springs
 from rockflex.structure._rocking import RockingProperties
 
@@ -133,7 +133,7 @@ class RockingModel(Value):
         return state_layout_of(
             self.properties.n_modes,
             integrated=self.integrated,
-            viscous=not heaves and any(isinstance(each, ViscousElement) for each in self.elements),
+            viscous=not heaves and any(each.rate_dependent for each in self.elements),
             n_internal=internal_count(self.elements) + n_marks,
             slides=slides,
             heaves=heaves,

@@ -58,6 +58,11 @@ class Element(Protocol):
         """Force in N up to which it sticks, and with which it slides; zero if it does neither."""
         ...
 
+    @property
+    def rate_dependent(self) -> bool:
+        """Whether its tension follows the velocity δ'."""
+        ...
+
     def yields(self, branch: int) -> bool:
         """Return whether the elastic stretch is constant on a branch, in place of the internal variable."""
         ...
@@ -117,7 +122,7 @@ class Element(Protocol):
 
 
 class ElementDefaults:
-    """What is common to elements without an internal variable."""
+    """What most elements have in common."""
 
     @property
     def stretches(self) -> float | None:
@@ -126,6 +131,10 @@ class ElementDefaults:
     @property
     def friction(self) -> float:
         return 0.0
+
+    @property
+    def rate_dependent(self) -> bool:
+        return False
 
     def yields(self, branch: int) -> bool:
         del branch
@@ -225,6 +234,10 @@ class ViscousElement(WithoutMemory):
     coefficient: float
     position: float | None
 
+    @property
+    def rate_dependent(self) -> bool:
+        return True
+
     def tension(self, branch: int) -> ElementTension:
         del branch
         return ElementTension(damping=self.coefficient)
@@ -236,7 +249,7 @@ class ViscousElement(WithoutMemory):
 
 
 @dataclass(frozen=True)
-class YieldingElement:
+class YieldingElement(ElementDefaults):
     """A fuse, or a tendon that yields: F = α k e + (1 - α) z, z = k (e - m) within ± F_y, e = δ + e_0.
 
     The internal variable m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
@@ -257,10 +270,6 @@ class YieldingElement:
     @property
     def stretches(self) -> float | None:
         return self.stretched
-
-    @property
-    def friction(self) -> float:
-        return 0.0
 
     def yields(self, branch: int) -> bool:
         return branch not in (ELASTIC, SLACK)

@@ -16,7 +16,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
 from rockflex.foundation.shown import shown
 from rockflex.structure._base_element import BaseElement
-from rockflex.structure._branches import BranchLimit, Element, ElementTension
+from rockflex.structure._branches import BranchLimit, Element, ElementDefaults, ElementTension
 
 ROUNDING = 1e-9  # relative: by how much forces and energies may differ that must be equal
 MAX_BRANCHES = 32
@@ -235,7 +235,7 @@ class ElementLaw(BaseElement):
 
 
 @dataclass(frozen=True)
-class LawElement:
+class LawElement(ElementDefaults):
     """An element of any law: its branches in their order. It remembers its internal variable and its branch."""
 
     law: ElementLaw
@@ -263,10 +263,6 @@ class LawElement:
         return 0.0
 
     @property
-    def friction(self) -> float:
-        return 0.0
-
-    @property
     def branches(self) -> tuple[int, ...]:
         return tuple(range(len(self.parts)))
 
@@ -280,10 +276,6 @@ class LawElement:
 
     def yields(self, branch: int) -> bool:
         return self.parts[branch].yields != 0
-
-    def broken(self, branch: int) -> bool:
-        del branch
-        return False
 
     def direction(self, branch: int) -> int:
         return self.parts[branch].yields

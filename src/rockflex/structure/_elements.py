@@ -487,9 +487,10 @@ def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
         items = (given,)
     for item in items:
         if not isinstance(item, BaseElement):
+            known = ", ".join(each.__name__ for each in ELEMENTS.values())
             raise InputError(
-                "elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, or have an "
-                f"ElementLaw, but {shown(item)} was given. Write Tendon(initial_force, stiffness), for example.",
+                f"elements must be {known} objects, or have an ElementLaw, but {shown(item)} was given. Write "
+                "Tendon(initial_force, stiffness), for example.",
                 field="elements",
             )
     return items

@@ -246,8 +246,9 @@ class Restrained(ModifiedStructure):
     ----------
     structure
         Any structure: a `Frame`, a `rigid_block`, an `Eccentric` one ...
-    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
-        Any number of them, at any positions within the base; of a rigid block also ties from any height.
+    elements : tuple of elements
+        Any number, such as a `Tendon` or a `YieldingDissipator`, at any positions within the base; of a rigid block
+        also ties from any height.
 
     Raises
     ------

@@ -469,9 +469,12 @@ def _property_text(name: str, value: Any, unit: str, units: UnitSystem) -> str:
         return translated("breaks at {elongation}", elongation=units.text(value, "displacement"))
     if name == "tension_only":
         return translated("tension only")
+    words = name.replace("_", " ")
+    if value is True:
+        return words
     if unit in _QUANTITIES and isinstance(value, float):
-        return f"{_SYMBOLS.get(name, name)} = {units.text(value, _QUANTITIES[unit])}"
-    return f"{name} = {shown(value)}"
+        return f"{_SYMBOLS.get(name, words)} = {units.text(value, _QUANTITIES[unit])}"
+    return f"{words} = {shown(value)}"
 
 
 def largest_rotations(run: Response, history: History) -> dict[int, float]:
