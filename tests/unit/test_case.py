@@ -208,6 +208,16 @@ def test_a_study_of_python_is_written_and_read(tmp_path):
     pd.testing.assert_frame_equal(again.run(), study.run())
 
 
+def test_a_study_may_have_tables_beside_objects(tmp_path):
+    path = rf.CloudStudy(structures={"frame": FRAME}, records=SUITE).write(tmp_path / "cloud.toml")
+    path.write_text(f'{path.read_text()}\n[[structures]]\nname = "block"\n{BLOCK}')
+    study = rf.read_case(path)
+    assert [each["name"] for each in study.document()["structures"]] == ["frame", "block"]
+    assert study.document()["structures"][1]["block"]["mass"] == 50e3
+    assert rf.read_case(study.write(tmp_path / "again.toml")).document() == study.document()
+    assert study.run()["structure"].tolist() == ["frame", "block"]
+
+
 def test_infinite_numbers_of_a_folder_are_numbers(tmp_path):
     study = rf.CloudStudy(structures=[{"name": "inf", "frame": frame_values()}], records=SUITE)
     study.run(tmp_path / "stored")

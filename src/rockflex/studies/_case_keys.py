@@ -351,8 +351,8 @@ def _document_of_object(name: str, value: Any) -> Any:
     if isinstance(value, GivenRecords | GivenStructure | GivenGround):
         return value.document()
     if isinstance(value, list):
-        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, GivenStructure)]
-        return found or None
+        entries = cast("list[Any]", value)
+        return [_entry_document(each) for each in entries] if any(_is_given(each) for each in entries) else None
     if isinstance(value, ImpactLaw):
         return impact_law_document(value)
     if name == "demands" and value:
@@ -360,6 +360,14 @@ def _document_of_object(name: str, value: Any) -> Any:
     if isinstance(value, Ground):
         return object_document(name, value)
     return function_document(name, value) if callable(value) else None
+
+
+def _is_given(entry: Any) -> bool:
+    return isinstance(entry, GivenStructure)
+
+
+def _entry_document(entry: Any) -> Any:
+    return entry.document() if _is_given(entry) else as_json_value(entry.model_dump(exclude_none=True))
 
 
 class GivenStructure(StructureEntry):
