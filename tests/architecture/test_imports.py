@@ -41,7 +41,7 @@ HOME = {
     "starlette": {"web"},
     "uvicorn": {"web"},
     "anyio": {"web"},
-    "tomli_w": {"studies", "report.project", "web"},
+    "tomli_w": {"studies", "report.project"},
     "obspy": {"motion"},
     "gmprocess": {"motion"},
     "openpyxl": {"motion"},

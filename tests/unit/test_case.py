@@ -208,6 +208,32 @@ def test_a_study_of_python_is_written_and_read(tmp_path):
     pd.testing.assert_frame_equal(again.run(), study.run())
 
 
+def test_a_study_may_have_tables_beside_objects(tmp_path):
+    path = rf.CloudStudy(structures={"frame": FRAME}, records=SUITE).write(tmp_path / "cloud.toml")
+    path.write_text(f'{path.read_text()}\n[[structures]]\nname = "block"\n{BLOCK}')
+    study = rf.read_case(path)
+    assert [each["name"] for each in study.document()["structures"]] == ["frame", "block"]
+    assert study.document()["structures"][1]["block"]["mass"] == 50e3
+    assert rf.read_case(study.write(tmp_path / "again.toml")).document() == study.document()
+    assert study.run()["structure"].tolist() == ["frame", "block"]
+
+
+def test_a_study_may_name_structure_files(file, tmp_path):
+    file(BLOCK, "block.toml")
+    text = f'study = "cloud"\n{CASE}[[structures]]\nname = "b"\nfile = "block.toml"\n'
+    study = rf.read_case(file(text, "cloud.toml"))
+    table = study.run(tmp_path / "stored")
+    assert table["max_rotation"][0] == table["max_rotation"][1] > 0.0
+    (tmp_path / "deep").mkdir()
+    assert rf.read_case(study.write(tmp_path / "deep" / "cloud.toml")).run().equals(study.run())
+    file(BLOCK.replace("0.2", "0.3"), "block.toml")  # the stored results are not of this structure
+    with pytest.raises(rf.InputError, match=r"structures\[1\]\.file"):
+        study.run(tmp_path / "stored")
+    file(f"{BLOCK}[ground]\nfriction = 0.3\n", "block.toml")
+    with pytest.raises(rf.InputError, match=r"no\. 2, 'b': block\.toml has ground"):
+        study.run()
+
+
 def test_infinite_numbers_of_a_folder_are_numbers(tmp_path):
     study = rf.CloudStudy(structures=[{"name": "inf", "frame": frame_values()}], records=SUITE)
     study.run(tmp_path / "stored")

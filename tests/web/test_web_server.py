@@ -340,6 +340,27 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
         assert (tmp_path / "response.svg").read_text().startswith("<?xml")
 
 
+@pytest.mark.slow
+def test_the_case_file_repeats_the_numbers(client, tmp_path) -> None:
+    _, found = upload(client)
+    states = [
+        client.state(scale=1.3, impact="complete", models=["2DOF-S", "fixed"]),
+        client.state(record={"source": "pulse", "pulse": {"shape": "mavroeidis", "amplitude": 0.6, "nu": 0.3}}),
+        client.state(record={"source": "upload", "upload": found["upload"]}, models=["2DOF-S"]),
+        client.state(structure=PRESETS[8]["structure"], ground={"friction": 0.3}, models=["2DOF-S", "MDOF-S"]),
+        client.state(impact="restitution", restitution=0.4, models=["2DOF-S-BW", "MDOF-S"], bouc_wen=YIELDING),
+    ]
+    for state in states:
+        name, case = client.download("/api/file/case", state)
+        (tmp_path / name).write_bytes(case)
+        name, record = client.download("/api/file/record", state)
+        (tmp_path / name).write_bytes(record)
+        table = rf.read_case(tmp_path / "case.toml").run().set_index("model")
+        for each in client.ask("/api/response", state)["models"]:
+            for key in ("max_rotation", "max_top_displacement", "max_base_moment"):
+                assert table[key][each["label"]] == pytest.approx(each["peaks"][key], rel=1e-9)
+
+
 def test_every_download_is_what_it_says(client) -> None:
     state = client.state(models=["2DOF-S", "fixed"])
     response = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", free_vibration=5.0)

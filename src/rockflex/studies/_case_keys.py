@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast
 
@@ -31,9 +32,11 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._suite import Selection, Suite
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure.file._object_tables import CLASS
+from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import StructureEntry
-from rockflex.structure.file._toml_table import TomlTable, table_of, toml_problem_sentences
+from rockflex.structure.file._structure_file import build_structure_in_file, read_toml_file
+from rockflex.structure.file._structure_tables import Built
+from rockflex.structure.file._toml_table import TomlTable, parse_toml_table, table_of, toml_problem_sentences
 from rockflex.studies._arguments import (
     check_run_options,
     checked_motions,
@@ -124,6 +127,23 @@ class StructureFile(RunOptionKeys, StructureEntry):
     """A structure file: one structure, optionally a name and elements, and options of its runs."""
 
     report: Annotated[ReportHeadTable | None, Described("a table", form=PLAIN)] = None
+
+
+def structure_in_file(path: Path) -> tuple[Built, StructureFile | None]:
+    """Return the structure of a file, and the file's content; None for the arguments of a class.
+
+    Raises
+    ------
+    InputError
+        As `read_structure`.
+    """
+    content = read_toml_file(path, "structure")
+    if CLASS in content:
+        return structure_from_table(content, str(path)), None
+    if "structures" in content or "study" in content:
+        raise InputError(f"{path} is a case or a study, but the file of one structure is expected.")
+    found = parse_toml_table(StructureFile, content, str(path))
+    return build_structure_in_file(path, found), found
 
 
 def impact_law_name(law: ImpactLaw) -> str:
@@ -351,8 +371,8 @@ def _document_of_object(name: str, value: Any) -> Any:
     if isinstance(value, Given):
         return value.document()
     if isinstance(value, list):
-        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, Given)]
-        return found or None
+        entries = cast("list[Any]", value)
+        return [_entry_document(each) for each in entries] if any(isinstance(each, Given) for each in entries) else None
     if isinstance(value, ImpactLaw):
         return impact_law_document(value)
     if name == "demands" and value:
@@ -360,6 +380,10 @@ def _document_of_object(name: str, value: Any) -> Any:
     if isinstance(value, Ground):
         return object_document(name, value)
     return function_document(name, value) if callable(value) else None
+
+
+def _entry_document(entry: Any) -> Any:
+    return entry.document() if isinstance(entry, Given) else as_json_value(entry.model_dump(exclude_none=True))
 
 
 class GivenStructure(StructureEntry, Given):
@@ -388,6 +412,53 @@ class GivenStructure(StructureEntry, Given):
     def document(self) -> dict[str, Any]:
         """Return its name, and what determines it."""
         return {"name": self.name, "given": object_document("structures", self.given)}
+
+
+class FileStructure(StructureEntry, Given):
+    """A structure file in the place of a table."""
+
+    file: Annotated[str, Described("the path of a structure file, in quotes", form=PLAIN)]
+
+    @property
+    def elsewhere(self) -> str:
+        """The key that holds the structure in place of a table."""
+        return "file"
+
+    def build(self, folder: Path | str = "") -> Built:
+        """Build the structure.
+
+        Raises
+        ------
+        InputError
+            As `read_structure`, or if the file has options of runs, which a study has for all its structures.
+        """
+        built, found = structure_in_file(Path(folder) / self.file)
+        options = [name for name in RunOptionKeys.model_fields if found and getattr(found, name) is not None]
+        if options:
+            raise InputError(
+                f"{self.file} has {', '.join(options)}, but the structures of a study share their options. Write it in "
+                "the study, and leave it out there."
+            )
+        return built
+
+    def checksums(self, folder: Path | str = "") -> dict[str, str]:
+        """Return the SHA-256 of the file, and of what it is made from besides."""
+        path = Path(folder) / self.file
+        _, found = structure_in_file(path)
+        own = {} if found is None else found.checksums(path.parent)
+        return {"file": sha256(path.read_bytes()).hexdigest(), **own}
+
+    def moved(self, path: Moved) -> Self:
+        """Return the same structure with the path of its file from another folder."""
+        return self.model_copy(update={"file": path(self.file)})
+
+    def in_file(self) -> dict[str, Any]:
+        """Return its name and its file."""
+        return self.model_dump(include={"name", "file"}, exclude_unset=True)
+
+    def document(self) -> dict[str, Any]:
+        """Return its name and its file."""
+        return {"name": self.name, "file": self.file}
 
 
 class RunsKeys(ObjectOptionKeys, CaseKeys):

@@ -50,9 +50,7 @@ def option_of_file(key: str, table: Any) -> Any:
 
 
 class Given:
-    """What a study is given in Python, `given`, in the place of a table."""
-
-    given: Any
+    """Something in the place of a table of a study: an object of Python, or a file."""
 
     def document(self) -> Any:
         """Return what determines it."""

@@ -18,9 +18,7 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import KINDS, StructureEntry
-from rockflex.structure.file._structure_file import build_structure_in_file, read_toml_file
 from rockflex.structure.file._structure_tables import Built
-from rockflex.structure.file._toml_table import parse_toml_table
 from rockflex.studies._arguments import (
     InitialState,
     Output,
@@ -34,9 +32,9 @@ from rockflex.studies._case_keys import (
     ObjectOptionKeys,
     RunOptionKeys,
     RunsKeys,
-    StructureFile,
     key_in_file,
     model_labels,
+    structure_in_file,
     validator_of_check,
 )
 from rockflex.studies._objects import object_in_file, option_of_file
@@ -124,17 +122,11 @@ class CaseStructure(OwnRunKeys, StructureEntry):
             return self.object, self
         if self.file is None:
             return self.build(folder), self
-        path = folder / self.file
-        content = read_toml_file(path, "structure")
-        if CLASS in content:
-            return structure_from_table(content, str(path)), self
-        if "structures" in content or "study" in content:
-            raise InputError(f"{path} is a case or a study, but the file of one structure is expected.")
-        found = parse_toml_table(StructureFile, content, str(path))
-        given = {name: getattr(found, name) for name in RunOptionKeys.model_fields if getattr(self, name) is None}
-        if self.impact is not None:
-            given.pop("restitution", None)
-        return build_structure_in_file(path, found), self.model_copy(update=given)
+        built, found = structure_in_file(folder / self.file)
+        names = [] if found is None else [name for name in RunOptionKeys.model_fields if getattr(self, name) is None]
+        if self.impact is not None and "restitution" in names:
+            names.remove("restitution")
+        return built, self.model_copy(update={name: getattr(found, name) for name in names})
 
     def moved(self, path: Moved) -> Self:
         """Return the same structure with the paths of its files from another folder."""

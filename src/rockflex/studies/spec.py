@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self, cast
 
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, field_validator
 
@@ -15,9 +15,9 @@ from rockflex.models._label import parse_model
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_tables import structure_from_table
 from rockflex.structure.file._structure_entry import StructureEntry
-from rockflex.structure.file._toml_table import TomlTable
+from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
 from rockflex.studies._arguments import checked_structures, is_structure_or_properties, rocking_properties_of
-from rockflex.studies._case_keys import CaseKeys, GivenStructure, RunsKeys, validator_of_check
+from rockflex.studies._case_keys import CaseKeys, FileStructure, GivenStructure, RunsKeys, validator_of_check
 from rockflex.studies._objects import Given, added_checksums, object_checksum
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._record_tables import Moved
@@ -127,9 +127,11 @@ class RunsStudySpec(RunsKeys, StudySpec):
 
 
 def _given_or_table(given: Any, table: ValidatorFunctionWrapHandler) -> Any:
-    """Return a structure of Python, which a file has as a table `object`, or the entry of a file."""
+    """Return a structure of Python, which a file has as a table `object`, one in a file of its own, or an entry."""
+    if isinstance(given, Mapping) and "file" in given:
+        return parse_toml_table(FileStructure, cast("Mapping[str, Any]", given))
     if not isinstance(given, Mapping) or "object" not in given:
-        return given if isinstance(given, GivenStructure) else table(given)
+        return given if isinstance(given, GivenStructure | FileStructure) else table(given)
     unknown = [str(key) for key in given if key not in ("name", "object")]
     if unknown:
         raise InputError(f"{unknown[0]} is not known beside object; it is among the arguments of its class.")

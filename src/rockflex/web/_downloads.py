@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-import tomli_w
-
 from rockflex.foundation.csv import table_as_csv
 from rockflex.foundation.language import translated
 from rockflex.motion._columns import record_csv
@@ -15,7 +13,9 @@ from rockflex.report.run._report_page import run_report_as_html
 from rockflex.response._outputs import COLUMNS, described_output
 from rockflex.response._response import Response
 from rockflex.response._tables import history_columns
+from rockflex.studies._record_tables import record_row
 from rockflex.studies._study_kind import KINDS
+from rockflex.studies.case import Case
 from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._folders import records_as_zip
@@ -227,6 +227,27 @@ def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[s
     return "response.py", response_script(state, name)
 
 
+def _case_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    """Return the runs of the Response tab as a case; a record that no suite has is the file that the page saves."""
+    choice, note = state.record, ""
+    if choice.source == "suite":
+        records: dict[str, Any] = {"suites": [choice.suite], "include": [choice.name]}
+    else:
+        motion = chosen_motion(choice, uploads)
+        file = f"{_motion_file_name(motion)}.csv"
+        records, note = {"files": [record_row(file, motion)]}, f"# with {file}, which the page saves: Record (CSV)\n"
+    with errors_as_refusals(""):
+        case = Case(
+            structures=[state.structure.model_dump(exclude_none=True)],
+            records=records,
+            models=state.models,
+            scales=[state.scale],
+            free_vibration=state.free_vibration,
+            **state.option_keys(state.models),
+        )
+        return "case.toml", f'# rockflex run case.toml, or rf.read_case("case.toml").run()\n{note}{case.to_toml()}'
+
+
 def _maker_of_study_input(what: str) -> Callable[[PageState, UploadedRecords], tuple[str, str | bytes]] | None:
     """Return the maker of a file from which a study is run, such as "cloud-study" or "design-python"; None if none."""
     kind, _, form = what.partition("-")
@@ -238,7 +259,7 @@ def _maker_of_study_input(what: str) -> Callable[[PageState, UploadedRecords], t
         study = page.study(state, uploads)
         head = f"# rockflex {KINDS[kind].command} {kind}.toml --out study\n"
         head += UNPACK_HINT if study.records.folder else ""
-        return f"{kind}.toml", head + tomli_w.dumps(study.model_dump(exclude_none=True))
+        return f"{kind}.toml", head + study.to_toml()
 
     def python(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
         return f"{kind}.py", page.script(state, page.study(state, uploads))
@@ -284,6 +305,7 @@ _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes
     "record": _record_csv_file,
     "records": lambda state, uploads: (f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))),
     "python": _response_python_file,
+    "case": _case_file,
     "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
     "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),
     "selection-figure": _selection_figure_file,

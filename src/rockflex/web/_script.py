@@ -54,6 +54,9 @@ def response_script(state: PageState, upload_name: str = "record") -> str:
             "    for warning in response.warnings:",
             '        print(f"  {warning}")',
             'rf.save_figure(rf.plot_history(responses.values()), "response.svg")',
+            "",
+            "# The same from a file that the page saves, Case (TOML):",
+            '# table = rf.read_case("case.toml").run()',
         ],
         yields=yields,
     )

@@ -36,7 +36,7 @@ const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment",
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
   ["figure", t("Figure (SVG)")], ["animation", t("Animation (GIF)")], ["histories", t("Histories (CSV)")],
-  ["python", t("Python lines")], ["record", t("Record (CSV)")],
+  ["python", t("Python lines")], ["case", t("Case (TOML)")], ["record", t("Record (CSV)")],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
