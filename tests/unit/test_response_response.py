@@ -189,6 +189,7 @@ def solution(**changes):
         "time_of_lost_support": 0.0,
         "n_uplifts": 0,
         "n_impacts": 0,
+        "n_guarded": 0,
         "final_state": np.zeros(10),
         "states": None,
     }

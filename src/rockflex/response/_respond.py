@@ -63,6 +63,7 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         max_edge_settlement=settlement,
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
+        guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
         nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
         or left > p.pivot(-1).nominal_overturning_rotation,
         end_time=solution.end_time,
@@ -183,6 +184,7 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "max_edge_uplift": 2.0 * half_width * lever,
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
+        "guarded_impacts": solutions.guarded_impacts,
         "nominal_overturning": (right > nominal_right) | (left > nominal_left),
         "end_time": solutions.end_time,
         "settled": solutions.settled,

@@ -120,7 +120,7 @@ def load_response(path: Path, kinds: dict[str, type]) -> Kept:
         raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:
         arrays = arrays_from_npz(path, _LIMITS)
-        scalars = json.loads(str(arrays["response"]))
+        scalars = {"guarded_impacts": 0.0} | json.loads(str(arrays["response"]))  # older files do not have it
         kept = _response_from_file(scalars, arrays, kinds) if scalars["format"] == FORMAT else None
     except Exception as error:  # NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"

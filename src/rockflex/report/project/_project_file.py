@@ -250,8 +250,10 @@ def structure_keys(members: Mapping[str, bytes], row: StructureRow) -> dict[str,
     if isinstance(springs, dict):
         springs.pop("area", None)  # which only checks of pressures know
     if (law := row.impact) is not None:
-        found["impact"] = _LAW_NAMES.get(str(law.get(CLASS)), law)
-        found |= {"restitution": law["e"]} if "e" in law else {}
+        name = _LAW_NAMES.get(str(law.get(CLASS)))
+        found["impact"] = name or law
+        given = law.get(LAWS[name].restitution_name()) if name else None
+        found |= {} if given is None else {"restitution": given}
     return found
 
 
