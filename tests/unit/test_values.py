@@ -67,7 +67,9 @@ def statistics() -> rf.PopulationStatistics:
 
 
 def pushed() -> rf.Pushover:
-    return rf.pushover(rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2)
+    return rf.pushover(
+        rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2, lifts=False
+    )
 
 
 def project() -> rf.Project:

@@ -273,10 +273,10 @@ class GroundSchema:
         Described(
             "the rotary inertia of base and floors about the axis of the masses",
             "kg m²",
-            low=1e-6,
+            low=0.0,
             high=1e15,
             metavar="KG*M2",
-            hint="For a base on springs.",
+            hint="For a base on springs; 0 for a block, which has its own.",
         ),
     ] = None
     mat_mass: Annotated[
