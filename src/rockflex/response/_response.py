@@ -62,6 +62,16 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 ratio=peaks["tendon_utilisation"],
             )
         )
+    if peaks["may_fall"]:
+        found.append(
+            translated(
+                "The run ends at {time:.4g} s while the base may still fall: θ is {rotation} there, the largest of the "
+                "run and growing, or has energy enough to pass α. Its peak, and whether it overturns, is open. "
+                'Continue the run with free_vibration="settle".',
+                time=peaks["end_time"],
+                rotation=text("residual_rotation"),
+            )
+        )
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
         found.append(
             translated(
@@ -253,6 +263,7 @@ class Response(HtmlTable, Value):
     n_impacts: int
     guarded_impacts: float
     nominal_overturning: bool
+    may_fall: bool
     end_time: float
     settled: bool
     max_element_force: Array
