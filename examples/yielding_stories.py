@@ -50,7 +50,7 @@ def study() -> pd.DataFrame:
                         elastic, ratio * at_uplift * shears(elastic, pattern), POST_YIELD_RATIO
                     )
                     top = 4.0 * float(yielding.yield_drift.sum())
-                    small = {"models": "2DOF-S-BW", "bouc_wen": rf.pushover(yielding, top).fit().bouc_wen}
+                    small = {"models": "2DOF-S-BW", "bouc_wen": rf.pushover(yielding, top, lifts=False).fit().bouc_wen}
                 elif pattern != "first mode":
                     continue
                 whole = rf.simulate_many({name: yielding}, motions, models="MDOF-S", **options)

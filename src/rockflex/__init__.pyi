@@ -24,12 +24,15 @@ from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
 from .fragility import write_nrml as write_nrml
 from .fragility import write_pelicun as write_pelicun
+from .models import AngularMomentum as AngularMomentum
 from .models import BoucWen as BoucWen
 from .models import ImpactLaw as ImpactLaw
 from .models import Model as Model
+from .models import PivotImpulse as PivotImpulse
 from .models import Restitution as Restitution
 from .models import VVELComplete as VVELComplete
 from .models import VVELSimplified as VVELSimplified
+from .models import restitution_from_decay as restitution_from_decay
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
 from .motion import RotatedSpectrum as RotatedSpectrum

@@ -13,6 +13,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _batch
 from rockflex.cli._app import app
+from rockflex.foundation.schema import IMPACT
 from rockflex.models import _label
 from rockflex.models._rocking_model import RockingModel
 from rockflex.studies import PreparedCase
@@ -126,7 +127,7 @@ def test_what_is_assumed_stands_above_the_table():
     flags = ("--impact", "restitution", "--restitution", 0.7, *YIELDING, "--initial-rotation", 0.01)
     lines = invoke(STRUCTURE, RECORD, *flags).stdout.splitlines()
     assert lines[1:4] == [
-        "Impact: restitution, e = 0.7",
+        "Impact: restitution, e = 0.7, 0.996 from one half cycle to the next",
         "Hysteresis of -BW: D_y = 0.05 m, α = 0.01, γ = 0.5, β = 0.5, n = 8",
         "At rest at θ = 0.01 rad at t = 0",
     ]
@@ -166,7 +167,7 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
 @pytest.mark.parametrize(
     ("flags", "said"),
     [
-        (["--impact", "elastic"], '--impact must be "simplified", "complete" or "restitution", but \'elastic\''),
+        (["--impact", "elastic"], f"--impact must be {IMPACT.expected}, but 'elastic'"),
         (["--impact", "restitution"], 'The impact law "restitution" needs its coefficient. Give restitution, a number'),
         (["--restitution", 0.5], "A restitution of 0.5 was given, but the impact law is the model's own. Choose the"),
         (["--impact", "complete", "--restitution", 0.5], "but the impact law is 'complete'. Choose the impact law"),
@@ -207,7 +208,7 @@ def test_free_vibration_of_no_length():
         ("", "[bouc_wen]\nyield_displacement = 0.05\ngama = 0.4", "[bouc_wen] gama is not known; there are yield_disp"),
         ("", "[bouc_wen]\nexponent = 4", "[bouc_wen] yield_displacement is missing: D_y of the first mode, a number"),
         ("", "[bouc_wen]\nyield_displacement = -0.05", ", [bouc_wen]: yield_displacement must be a positive, finite"),
-        ('impact = "elastic"', "", 'impact must be "simplified", "complete" or "restitution", but \'elastic\' was'),
+        ('impact = "elastic"', "", f"impact must be {IMPACT.expected}, but 'elastic' was"),
         ("restitution = true", "", "restitution must be a number from 0 to 1, but True was given."),
         ('impact = "restitution"', "", "needs its coefficient. Give restitution, a number from 0 to 1."),
         ("bouc_wen = 0.05", "", "bouc_wen must be a table, but 0.05 was given."),

@@ -154,8 +154,16 @@ def test_the_block_is_homogeneous():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((0.0, 1.0), "slenderness must be positive, but 0.0 was given. It is atan(b/h) in rad."),
-        ((2.0, 1.0), "slenderness must be a number between -1.5708 and 1.5708 rad, but 2.0 was given."),
+        (
+            (0.0, 1.0),
+            "slenderness must be above 0 and below π/2 = 1.5708 rad, but 0.0 was given. It is atan(b/h) of the half "
+            "sides.",
+        ),
+        (
+            (2.0, 1.0),
+            "slenderness must be above 0 and below π/2 = 1.5708 rad, but 2.0 was given. It is atan(b/h) of the half "
+            "sides. An aspect ratio h/b of 2 is 0.4636 rad.",
+        ),
         ((0.2, 0.0), "half_diagonal must be a positive, finite number in m, but 0.0 was given."),
         ((0.2, 1.0, -1.0), "mass must be a positive, finite number in kg, but -1.0 was given."),
     ],

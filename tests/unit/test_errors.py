@@ -42,10 +42,10 @@ def test_an_error_of_no_argument_has_no_field() -> None:
 
 def test_a_place_stands_before_the_text_and_not_in_it() -> None:
     entry = StructureEntry.model_validate({"block": {"slenderness": -0.1, "half_diagonal": 1.0}})
-    with pytest.raises(InputError, match=r"^\[block\]: slenderness must be positive") as caught:
+    with pytest.raises(InputError, match=r"^\[block\]: slenderness must be above 0") as caught:
         entry.build()
     assert caught.value.field == "slenderness"
-    assert caught.value.said.startswith("slenderness must be positive")
+    assert caught.value.said.startswith("slenderness must be above 0")
 
 
 def test_errors_go_to_other_processes_whole() -> None:

@@ -140,7 +140,7 @@ COEFFICIENT = "friction must be a positive Coulomb coefficient, such as 0.4, or 
         (lambda: rf.Ground([0.3, 0.4], SPRINGS, 1e3), "friction must be one number, or one for each", "friction"),
         (lambda: rf.Ground(springs=[1.0]), "springs must be of type Springs, but list was given.", "springs"),
         (lambda: rf.Ground(springs=SPRINGS), "A base without rotary inertia on springs has", "base_inertia"),
-        (lambda: rf.Ground(springs=SPRINGS, base_inertia=0.0), "base_inertia must be a positive", "base_inertia"),
+        (lambda: rf.Ground(springs=SPRINGS, base_inertia=-1.0), "base_inertia must be a zero or", "base_inertia"),
         (lambda: rf.Ground(0.4, base_inertia=1e3), "base_inertia belongs to springs, but 1000.0 was", "base_inertia"),
         (lambda: rf.winkler_bed(B, BREADTH, MODULUS, end_zone=2.0), "end_zone must lie in [0, 2)", "end_zone"),
         (lambda: rf.winkler_bed(B, BREADTH, MODULUS, end_zone=0.5, n=2), "n must be a whole number from 3", "n"),
@@ -155,3 +155,23 @@ def test_bad_values_are_refused(make, message, field):
         make()
     assert str(raised.value).startswith(message)
     assert raised.value.field == field
+
+
+def test_a_block_needs_no_inertia_of_its_base_but_a_frame_with_all_modes_does():
+    """The rotary inertia of a block is its own; that of a frame of lumped masses is the base's."""
+    block = rf.rigid_block(slenderness=0.2, half_diagonal=3.0, mass=1e5)
+    b = block.half_width
+    springs = rf.Springs([-b, b], 0.5 * block.m_tot * 9.81 / 1e-3).damped(0.2, block.m_tot)
+    with pytest.raises(rf.InputError, match=r"0 where the structure has its own.*twice"):
+        rf.Ground(springs=springs)
+    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    below = rf.Ground(springs=rf.Springs([-0.5, 0.5], 1e9), base_inertia=0.0)
+    with pytest.raises(rf.InputError, match="no inertia against rotation") as caught:
+        rf.simulate(frame, rf.quiet_motion(1.0), ground=below)
+    assert caught.value.field == "base_inertia"
+    pulse = rf.one_sine_pulse(2.5, 1.5)
+    own, rest = (
+        rf.simulate(block, pulse, "rigid", ground=rf.Ground(springs=springs, base_inertia=inertia), output="peaks")
+        for inertia in (0.0, 1e-6)
+    )
+    assert own.max_rotation == pytest.approx(rest.max_rotation, rel=1e-6)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from builders import make_frame
-from rockflex import ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
+from rockflex import AngularMomentum, ImpactLaw, InputError, PivotImpulse, Restitution, VVELComplete, VVELSimplified
 from rockflex.models._impact import SidedRestitution, UnsavedLaw
 from rockflex.models._landing import velocities_after
 from rockflex.models._nonlinear_ground_system import nonlinear_system
@@ -38,6 +38,9 @@ LAWS = [
     Restitution(0.35),
     Restitution(1.0, shortest_excursion=0.02),
     SidedRestitution(Restitution(0.8), Restitution(0.3)),
+    AngularMomentum(),
+    AngularMomentum(0.6),
+    PivotImpulse(),
     Mine(),
 ]
 
@@ -57,8 +60,15 @@ def energy(p, state):
     return 0.5 * p.i_theta * spin**2 + mixed + 0.5 * p.effective_mass @ v**2
 
 
-def landed(law, p, state):
-    velocity, spin = law.after(p, state[p.n_modes : 2 * p.n_modes], state[-1])
+class Leaning(Mine):
+    """The same law, which also depends on where the masses are."""
+
+    def after(self, properties, modal_velocity, rotation_velocity, modal_displacement):
+        return 0.5 * modal_velocity + 0.1 * modal_displacement, 0.5 * rotation_velocity
+
+
+def landed(law, p, state, *displacement):
+    velocity, spin = law.after(p, state[p.n_modes : 2 * p.n_modes], state[-1], *displacement)
     return np.concatenate((state[: p.n_modes], velocity, [0.0, spin]))
 
 
@@ -84,6 +94,19 @@ def test_models_do_what_the_laws_say(law, n):
         before = draw(n, seed)
         before[:n] = 0.0
         np.testing.assert_allclose(applied(law, p, before), landed(law, p, before), rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("law", [AngularMomentum(), AngularMomentum(0.6), PivotImpulse(), Leaning()], ids=repr)
+@pytest.mark.parametrize("n", [1, 4])
+def test_complete_models_tell_the_laws_where_the_masses_are(law, n):
+    p = ALL.truncated(n)
+    for seed in range(20):
+        before = draw(n, seed)
+        before[:n] *= 0.01
+        found, expected = applied(law, p, before), landed(law, p, before, before[:n])
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
+        bare = landed(law, p, before, 0.0 * before[:n])
+        assert isinstance(law, AngularMomentum) or not np.array_equal(bare, expected) or expected[-1] == 0.0
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 4])

@@ -65,7 +65,7 @@ def record_set():
 
 
 def pushed() -> rf.Pushover:
-    return rf.pushover(rf.YieldingStories(make_frame(stiffness_ratio=float("inf")), 2e5, 0.05), 0.3)
+    return rf.pushover(rf.YieldingStories(make_frame(stiffness_ratio=float("inf")), 2e5, 0.05), 0.3, lifts=False)
 
 
 def ladders():

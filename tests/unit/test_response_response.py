@@ -8,6 +8,7 @@ import sys
 from dataclasses import fields
 from functools import cached_property
 from inspect import isfunction
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -189,6 +190,7 @@ def solution(**changes):
         "time_of_lost_support": 0.0,
         "n_uplifts": 0,
         "n_impacts": 0,
+        "n_guarded": 0,
         "final_state": np.zeros(10),
         "states": None,
     }
@@ -249,7 +251,9 @@ def test_a_simplified_run_beyond_the_balance_rotation_warns():
         peaks = rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-S", "peaks", initial=start)
         assert peaks.warnings == run.warnings
         assert "such as MDOF-C" in "".join(run.warnings) or not warned
-        assert not rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-C", initial=start).warnings
+        complete = rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-C", initial=start)
+        assert not any("static moment vanishes" in text for text in complete.warnings)
+        assert complete.may_fall == warned  # it is let go there, and has no time to fall
         block = rf.simulate(FRAME, rf.quiet_motion(0.02), "rigid", initial=start)
         assert "such as rigid-C" in "".join(block.warnings) or not warned
     fell = rf.simulate(
@@ -257,3 +261,24 @@ def test_a_simplified_run_beyond_the_balance_rotation_warns():
     )
     assert fell.status == "overturned"
     assert not fell.warnings
+
+
+def test_a_run_that_ends_during_the_fall_says_so():
+    """Under a pulse that overturns a block later, and one that does not; a longer run tells which."""
+    block = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    for amplitude, model in product((3.0, 8.0), ("rigid", "rigid-C")):
+        pulse = rf.half_sine_pulse(amplitude, 0.6)
+        short, whole = (rf.simulate(block, pulse, model, "peaks", free_vibration=more) for more in (0.0, "settle"))
+        assert (short.status, whole.status) == ("rocking", "overturned" if amplitude == 8.0 else "rocking")
+        assert short.may_fall
+        assert not whole.may_fall
+        assert any('free_vibration="settle"' in text for text in short.warnings)
+        assert not any("may still fall" in text for text in whole.warnings)
+    # From rest on its side of α: on its way back in, with energy enough for nothing.
+    start = rf.InitialState(rotation=0.15)
+    assert not rf.simulate(block, rf.quiet_motion(0.3), "rigid", "peaks", initial=start).may_fall
+    # Moving in, but fast enough to fall over beyond.
+    start = rf.InitialState(rotation=0.15, rotation_velocity=-1.0)
+    assert rf.simulate(block, rf.quiet_motion(0.02), "rigid", "peaks", initial=start).may_fall
+    table = rf.simulate_many(block, rf.half_sine_pulse(8.0, 0.6), ["rigid", "rigid-C"])
+    assert table["may_fall"].all()

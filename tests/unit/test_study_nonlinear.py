@@ -114,12 +114,13 @@ def test_a_motion_that_cannot_be_followed(model, label, values, options):
     shaken = rf.GroundMotion(np.array([0.0, 1e160, -1e160, 0.0]), 0.02)
     text = (
         f"The motion of {label} cannot be integrated in the sample before 0.02 s: no step is short enough. The state "
-        "[D, D', θ, θ'] there is ["
+        "there is "
     )
     with pytest.raises(rf.SolverError) as caught:
         rf.simulate(FRAMES[0], shaken, model, work_limit=None, **options)
     before, _, state = str(caught.value).partition(text)
     assert not before
-    assert [abs(float(value)) < 1e-100 for value in state.partition("]")[0].split(", ")] == [True] * values
+    told = [abs(float(each)) < 1e-100 for each in re.findall(r"-?\d[\d.e+-]*+", state.partition(" Check")[0])]
+    assert told == [True] * values
     table = rf.simulate_many(FRAMES[0], shaken, model, work_limit=None, **options)
     assert table["error"].tolist() == [str(caught.value)]

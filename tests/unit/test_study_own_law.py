@@ -13,6 +13,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from own_law import Lossy
+from rockflex.foundation.schema import IMPACT
 
 FRAME = frame_values(n_stories=2, period=0.5, aspect_ratio=6.0)  # fmt: skip
 GIVEN = {"structures": [{"name": "A", "frame": FRAME}], "records": {"suites": ["el-centro-1940"]},
@@ -63,7 +64,7 @@ def test_laws_of_the_package_are_taken_as_objects():
     pd.testing.assert_frame_equal(rf.run_study(cloud(impact=rf.Restitution(0.5))), named)
 
 
-EXPECTED = "Give VVELSimplified(), VVELComplete(), Restitution(e), or an object with `keeps`, `loses` and `after("
+EXPECTED = "Give VVELSimplified(), VVELComplete(), Restitution(e), AngularMomentum(), PivotImpulse(), or an object"
 
 
 @pytest.mark.parametrize(
@@ -71,9 +72,9 @@ EXPECTED = "Give VVELSimplified(), VVELComplete(), Restitution(e), or an object 
     [
         (Lossy, f"impact must be an impact law, but the class Lossy was given. {EXPECTED}"),
         (lambda p, v, w: (v, 0.0), f"impact must be an impact law, but function was given. {EXPECTED}"),
-        ("soft", 'impact must be "simplified", "complete" or "restitution", but \'soft\' was given'),
-        (3, 'impact must be "simplified", "complete" or "restitution", but 3 was given'),
-        ({"law": "own_law.Lossy"}, 'impact must be "simplified", "complete" or "restitution", but {\'law\': '),
+        ("soft", f"impact must be {IMPACT.expected}, but 'soft' was given"),
+        (3, f"impact must be {IMPACT.expected}, but 3 was given"),
+        ({"law": "own_law.Lossy"}, f"impact must be {IMPACT.expected}, but {{'law': "),
     ],
 )
 def test_what_is_no_law(given, text):
@@ -85,7 +86,7 @@ def test_what_is_no_law(given, text):
     ("given", "text"),
     [
         (Lossy, "impact must be an impact law, but the class Lossy was given."),
-        ("soft", 'impact must be "simplified", "complete" or "restitution", but \'soft\' was given.'),
+        ("soft", f"impact must be {IMPACT.expected}, but 'soft' was given."),
     ],
 )
 def test_what_is_no_law_in_a_copy(given, text):

@@ -55,7 +55,9 @@ def test_rows_are_the_cross_product_in_order():
 def test_columns_have_types():
     table = rf.simulate_many(STRUCTURES[0], MOTIONS)
     nullable = dict.fromkeys(("n_uplifts", "n_impacts"), "Int64")
-    nullable |= dict.fromkeys(("nominal_overturning", "settled", "tendon_yield", "tendon_overload"), "boolean")
+    nullable |= dict.fromkeys(
+        ("nominal_overturning", "may_fall", "settled", "tendon_yield", "tendon_overload"), "boolean"
+    )
     for name in VALUES:
         assert table[name].dtype == nullable.get(name, "float64"), name
     assert list(table["status"].cat.categories) == ["no_uplift", "rocking", "overturned"]

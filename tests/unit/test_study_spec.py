@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from rockflex.foundation.schema import IMPACT
 from rockflex.papers.silva_stojadinovic_2024.population import PopulationStudy
 from rockflex.studies import load_study
 from rockflex.studies._run_plan import run_plan
@@ -129,7 +130,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ('models = ["2DOF-S", "2DOF-S"]\n' + CLOUD, "models: '2DOF-S' occurs more than once. Give each once."),
         ("friction = 1\n" + CLOUD, "friction must be true or false: whether to find the required friction too"),
         ("runs_per_chunk = 0\n" + CLOUD, "runs_per_chunk must be about how many runs to compute and store together"),
-        ('impact = "soft"\n' + CLOUD, 'impact must be "simplified", "complete" or "restitution", but \'soft\' was'),
+        ('impact = "soft"\n' + CLOUD, f"impact must be {IMPACT.expected}, but 'soft' was"),
         ('impact = "restitution"\n' + CLOUD, 'The impact law "restitution" needs its coefficient. Give restitution,'),
         ("restitution = 0.5\n" + CLOUD, "A restitution of 0.5 was given, but the impact law is the model's own."),
         ("free_vibration = -1.0\n" + CLOUD, "free_vibration must be zero or more seconds"),

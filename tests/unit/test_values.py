@@ -67,7 +67,9 @@ def statistics() -> rf.PopulationStatistics:
 
 
 def pushed() -> rf.Pushover:
-    return rf.pushover(rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2)
+    return rf.pushover(
+        rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2, lifts=False
+    )
 
 
 def project() -> rf.Project:
@@ -172,6 +174,8 @@ VALUES = {
     rf.Response: response,
     rf.RotatedSpectrum: lambda: rf.rotated_spectrum(motion(), motion().scaled(0.5), [0.5, 1.0]),
     rf.Restitution: lambda: rf.Restitution(0.5),
+    rf.AngularMomentum: lambda: rf.AngularMomentum(0.9),
+    rf.PivotImpulse: rf.PivotImpulse,
     rf.Restrained: lambda: rf.Restrained(frame(), tendons()),
     rf.RitzShapes: lambda: rf.cosine_shapes(10.0, 3),
     rf.RockingProperties: lambda: rf.Restrained(frame(), tendons()).rocking(),

@@ -71,10 +71,7 @@ def test_a_run_is_stopped_when_its_work_is_done_and_says_how_far_it_came(monkeyp
             rf.simulate(frame(), EL_CENTRO, label, work_limit=1e-5, **options)
         said = str(caught.value)
         assert f"{label}{'-BW' if options else ''} was stopped at" in said
-        assert (
-            "of a run to 31.2 s: work_limit = 1e-05 s of computing is used up. The state [D, D', θ, θ'] there is ["
-            in said
-        )
+        assert "of a run to 31.2 s: work_limit = 1e-05 s of computing is used up. The state there is D = [" in said
         assert "The reason: " in said
         assert said.endswith(LIFT)
 

@@ -25,6 +25,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
+from rockflex.foundation.schema import IMPACT
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.web import _app, make_app
 from rockflex.web._forms import PRESETS
@@ -149,7 +150,7 @@ def test_a_bad_upload_is_refused(client) -> None:
         (
             {"impact": "model"},
             "impact",
-            'it must be "simplified", "complete" or "restitution", but \'model\' was given.',
+            f"it must be {IMPACT.expected}, but 'model' was given.",
         ),
         ({"bouc_wen": {"yield_displacement": 1e9}}, "bouc_wen.yield_displacement", "from 1e-06 to 100"),
         ({"bouc_wen": {"yield_displacement": 0.1, "exponent": 0.5}}, "bouc_wen.exponent", "from 1 to 50"),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import typer
@@ -14,7 +14,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.schema import BoucWenSchema, GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import Restitution
+from rockflex.models._impact import restitution_left
 from rockflex.models._label import parse_model
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
@@ -81,8 +81,7 @@ def describe_run_options(options: RunOptions, ground: dict[str, Any]) -> dict[st
     """Return the options that were given, for a document; `ground` has the values of the ground as they were given."""
     described: dict[str, Any] = {}
     if options.impact is not None:
-        values = asdict(options.impact) if isinstance(options.impact, Restitution) else {}
-        described["impact"] = {"law": impact_law_name(options.impact), **values}
+        described["impact"] = {"law": impact_law_name(options.impact), **asdict(cast("Any", options.impact))}
     if options.bouc_wen is not None:
         described["bouc_wen"] = asdict(options.bouc_wen)
     if options.initial is not None:
@@ -94,8 +93,9 @@ def lines_about_run_options(options: RunOptions, properties: RockingProperties, 
     """Return the options that were given in lines, for the head of a table of runs of a structure."""
     lines: list[str] = []
     if options.impact is not None:
-        e = f", e = {options.impact.e:g}" if isinstance(options.impact, Restitution) else ""
-        lines.append(f"Impact: {impact_law_name(options.impact)}{e}")
+        e, left = getattr(options.impact, "given_restitution", None), restitution_left(options.impact, properties)
+        after = "" if left is None else f", {left[1]:.4g} from one half cycle to the next"
+        lines.append(f"Impact: {impact_law_name(options.impact)}{'' if e is None else f', e = {e:g}'}{after}")
     if options.bouc_wen is not None:
         b, (size, unit) = options.bouc_wen, units.of("displacement", "m")
         lines.append(

@@ -199,7 +199,10 @@ class Jump:
     """What happens to the state at an event, as a compiled method."""
 
     def apply(self, y, a, a_v):
-        """Change the state; return 0 if `Event.target` follows, 1 if `Event.other` does, -1 after a failure."""
+        """Change the state; return 0 if `Event.target` follows, 1 if `Event.other` does, -1 after a failure.
+
+        With 2 added the event counts as `Event.noted`, too.
+        """
         return -1
 
     def error(self):

@@ -9,7 +9,7 @@ cdef class Journal:
     cdef double[::1] times
     cdef int[:, ::1] exits
     cdef int[::1] often  # events of each kind
-    cdef int[:, ::1] kinds  # numbers of the names of events, by phase and event
+    cdef int[:, ::1] kinds, notes  # numbers of the names of events and of their second names, by phase and event
     cdef dict names  # those numbers by name
     cdef double[:, ::1] rows
     cdef int[::1] places
@@ -22,3 +22,5 @@ cdef class Journal:
     cpdef int kind(self, object name)
     cpdef register_phase(self, int place, tuple events)
     cpdef int happen(self, double time, int place, int event) except -1 nogil
+    cpdef int note(self, int place, int event) except -1 nogil
+    cdef int tally(self, int kind) except -1 nogil

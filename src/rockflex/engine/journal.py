@@ -12,7 +12,8 @@ class Journal:
     def __init__(self, n):
         self.n = n
         self.clear()
-        self.often, self.kinds, self.names = np.zeros(16, dtype=np.intc), np.zeros((4, 4), dtype=np.intc), {}
+        self.often, self.names = np.zeros(16, dtype=np.intc), {}
+        self.kinds = self.notes = np.zeros((0, 0), dtype=np.intc)
         self.begin()
 
     def kind(self, name):
@@ -23,12 +24,12 @@ class Journal:
         """Take note of the events of a phase."""
         rows, columns = np.shape(self.kinds)
         if place >= rows or len(events) > columns:
-            kinds = np.zeros((2 * place + 4, max(len(events), columns)), dtype=np.intc)
-            kinds[:rows, :columns] = self.kinds
-            self.kinds = kinds
+            kinds = np.zeros((2, 2 * place + 4, max(len(events), columns, 4)), dtype=np.intc)
+            kinds[0, :rows, :columns], kinds[1, :rows, :columns] = self.kinds, self.notes
+            self.kinds, self.notes = kinds
         number: cython.int
         for number, event in enumerate(events):
-            self.kinds[place, number] = self.kind(event.name)
+            self.kinds[place, number], self.notes[place, number] = self.kind(event.name), self.kind(event.noted)
 
     def begin(self):
         """Begin anew."""
@@ -72,13 +73,23 @@ class Journal:
             with cython.gil:
                 self.times = np.concatenate((self.times, np.zeros(self.n_events)))
                 self.exits = np.concatenate((self.exits, np.zeros((self.n_events, 2), dtype=np.intc)))
+        self.tally(kind)
+        self.times[self.n_events] = time
+        self.exits[self.n_events, 0], self.exits[self.n_events, 1] = place, event
+        self.n_events += 1
+        return 0
+
+    def note(self, place, event):
+        """Count an event of a phase under its second name, too."""
+        self.tally(self.notes[place, event])
+        return 0
+
+    def tally(self, kind):
+        """Count an event of a kind."""
         if kind >= self.often.shape[0]:
             with cython.gil:
                 self.often = np.concatenate((self.often, np.zeros(kind, dtype=np.intc)))
         self.often[kind] += 1
-        self.times[self.n_events] = time
-        self.exits[self.n_events, 0], self.exits[self.n_events, 1] = place, event
-        self.n_events += 1
         return 0
 
     @property

@@ -508,7 +508,9 @@ class Run:
                 self.call_jump_function(event, a, v)
             return 0
         if chosen >= 0:
-            outcome += chosen
+            outcome += chosen & 1
+            if chosen & 2:
+                self.journal.note(self.now, event)
             self.flow.enlarge(self.sizes)
         elif chosen == -1:
             with cython.gil:

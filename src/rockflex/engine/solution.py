@@ -81,8 +81,8 @@ class Solution:
     lost_support, time_of_lost_support
         Largest decrease of the vertical reaction below its value at rest in N (negative if it was always above), and
         its time in s.
-    n_uplifts, n_impacts
-        Number of uplifts and of impacts.
+    n_uplifts, n_impacts, n_guarded
+        Number of uplifts, of impacts, and of those at which the guard of the impact law acted.
     final_state
         The last state: [D.., D'.., θ, θ', ..] as in `rockflex.models.StateLayout`. If the run has settled with the base
         open, θ is the rotation that remains. Energies of integrated models are known only with a history.
@@ -102,6 +102,7 @@ class Solution:
     time_of_lost_support: float
     n_uplifts: int
     n_impacts: int
+    n_guarded: int
     final_state: Array
     states: Array | None
 
@@ -113,6 +114,7 @@ class Ends(NamedTuple):
     samples: Integers  # (R,): completed
     uplifts: Integers  # (R,)
     impacts: Integers  # (R,)
+    guarded: Integers  # (R,)
     peaks: Array  # (R, F)
     times: Array  # (R, F)
     states: Array  # (R, S): the last ones
@@ -194,6 +196,11 @@ class Solutions:
         return self.ends.impacts
 
     @property
+    def guarded_impacts(self) -> Array:
+        """Share of the impacts at which the guard of the impact law acted, shape (R,); zero without impacts."""
+        return self.ends.guarded / np.maximum(self.ends.impacts, 1)
+
+    @property
     def final_state(self) -> Array:
         """The last states, shape (R, S')."""
         return self.ends.states
@@ -202,7 +209,7 @@ class Solutions:
         """Return the result of one run; raises its error if it could not be solved."""
         if index in self.failures:
             raise self.failures[index]
-        status, samples, uplifts, impacts = (int(each[index]) for each in self.ends[:4])
+        status, samples, uplifts, impacts, guarded = (int(each[index]) for each in self.ends[:5])
         peaks, times = self.ends.peaks[index], self.ends.times[index]
         overturned = status == OVERTURNED
         return Solution(
@@ -217,6 +224,7 @@ class Solutions:
             time_of_lost_support=float(times[-1]),
             n_uplifts=uplifts,
             n_impacts=impacts,
+            n_guarded=guarded,
             final_state=self.ends.states[index],
             states=self.states,
         )

@@ -124,6 +124,8 @@ class Event:
         What follows if the motion is too slow after the jump, which must be a matrix.
     other : hashable, optional
         Key of the phase that a compiled jump may choose.
+    noted : str, optional
+        Name under which the event counts, too, where a compiled jump says so.
     row_v : ndarray, shape (n,), optional
     direct_v : float
         See `row`.
@@ -138,6 +140,7 @@ class Event:
     jump: Array | Jump | Callable[..., tuple[Array, Key | None]] | None = None
     rest: Rest | None = None
     other: Key | None = None
+    noted: str = ""
     row_v: Array | None = None
     direct_v: float | Array = 0.0
     third: bool = initially(init=False, default=False, repr=False)  # whether the jump asks for the vertical one, too

@@ -13,14 +13,14 @@ def command_line_flag(name: str, key: Described) -> str:
     return "--" + (key.flag or name).replace("_", "-")
 
 
-LawName = Literal["simplified", "complete", "restitution"]
+LawName = Literal["simplified", "complete", "restitution", "angular-momentum", "pivot-impulse"]
 LAWS: tuple[str, ...] = get_args(LawName)
 _QUOTED = [f'"{law}"' for law in LAWS]
 IMPACT = Described(
     "the impact law",
     form=f"{', '.join(_QUOTED[:-1])} or {_QUOTED[-1]}",
     metavar="LAW",
-    hint="One of simplified (Eq. 25), complete (Eq. 29) and restitution. Default: each model's own law.",
+    hint=f"One of {', '.join(LAWS[:-1])} and {LAWS[-1]}. Default: each model's own law.",
 )
 RESTITUTION = Described(
     "the rotation velocity after an impact over that before",
@@ -28,7 +28,7 @@ RESTITUTION = Described(
     note="θ'_after / θ'_before, from 0 to 1.",
     form="a number from 0 to 1",
     metavar="E",
-    hint="From 0 to 1; with --impact restitution.",
+    hint="From 0 to 1; with --impact restitution, or as measured with --impact angular-momentum.",
 )
 
 
@@ -273,10 +273,10 @@ class GroundSchema:
         Described(
             "the rotary inertia of base and floors about the axis of the masses",
             "kg m²",
-            low=1e-6,
+            low=0.0,
             high=1e15,
             metavar="KG*M2",
-            hint="For a base on springs.",
+            hint="For a base on springs; 0 for a block, which has its own.",
         ),
     ] = None
     mat_mass: Annotated[

@@ -30,16 +30,27 @@ cdef class RockingField(Field):
 
 
 @cython.final
+cdef class LinearTurn(Field):
+    cdef double[::1] row, vertical
+    cdef int n, spin
+
+
+@cython.final
 cdef class Landing(Jump):
     cdef object gains
-    cdef bint scaled
-    cdef double passes, shortest, unseen
-    cdef RockingField own, beyond
+    cdef int n, side, slip
+    cdef bint complete, follows, guarded, measured, scaled
+    cdef double passes, shortest, unseen, total_mass, modal_inertia, arm
+    cdef double own_offset, own_left, new_offset, new_left  # of the old pivot and of the new one
+    cdef double[::1] mass, height
+    cdef Field beyond
     cdef double[::1] rates
     cdef int[::1] places
     cdef double[::1] offsets
 
+    cdef double inertia(self, const double *y, double left, double offset) noexcept nogil
     cdef double energy(self, const double *y, double inertia) noexcept nogil
+    cdef double share(self, const double *y, double before, double after) noexcept nogil
 
 
 @cython.final

@@ -484,60 +484,145 @@ class RockingField(Field):
 
 
 @cython.cclass
-class Landing(Jump):
-    """An impact after which the base stays in contact, or (`other`) rocks on about the other edge."""
+class LinearTurn(Field):
+    """θ'' of a linear phase, for `Landing`: rows over the states, the acceleration and 1, and the second per a_v."""
 
-    def __init__(self, gains, own, beyond, e, shortest, unseen, turnings):
-        self.gains, self.own, self.beyond = gains, own, beyond
-        self.scaled, self.passes, self.shortest, self.unseen = unseen is not None, e, shortest, unseen or 0.0
-        self.rates = np.zeros(own.size)
+    def __init__(self, row, vertical, spin):
+        self.row, self.vertical = np.array(row, dtype=float), np.array(vertical, dtype=float)
+        self.n, self.spin = len(row) - 2, spin
+
+    def rates(self, y, a, a_v, out, counted):
+        """Compute θ'' alone."""
+        k: cython.int
+        total: cython.double = (self.row[self.n] + a_v * self.vertical[self.n]) * a
+        total += self.row[self.n + 1] + a_v * self.vertical[self.n + 1]
+        for k in range(self.n):
+            total += (self.row[k] + a_v * self.vertical[k]) * y[k]
+        out[self.spin] = total
+
+
+@cython.cclass
+class Landing(Jump):
+    """An impact by a `LandingRule`, after which the base stays in contact, or (`other`) rocks on about the other edge.
+
+    Parameters
+    ----------
+    gains : callable
+        Returns the exception if the rule returns energy.
+    properties, side, complete
+        The structure, the side that ends, and whether the inertia depends on D.
+    rule
+        What the law says.
+    beyond : Field
+        Has θ'' about the other edge.
+    size, slip
+        Number of states, and the place of the velocity of a base that slides among them; -1 if it does not.
+    turnings : list
+        The internal variables that are set, as elements cease to yield: place, r, and δ - m.
+    """
+
+    def __init__(self, gains, properties, side, complete, rule, beyond, size, slip, turnings):
+        p, own, new = properties, properties.pivot(side), properties.pivot(-side)
+        self.gains, self.n, self.side, self.complete, self.beyond = gains, p.n_modes, side, complete, beyond
+        self.mass, self.height = np.array(p.effective_mass, dtype=float), np.array(p.effective_height, dtype=float)
+        self.total_mass, self.modal_inertia = p.m_tot, p.effective_mass @ p.effective_height**2
+        self.own_offset, self.own_left = side * own.arm, own.i_theta - p.effective_mass @ p.effective_height**2
+        self.new_offset, self.new_left = -side * new.arm, new.i_theta - p.effective_mass @ p.effective_height**2
+        self.follows, self.guarded, self.measured = rule.follows, rule.guarded, rule.ratio is not None
+        self.passes, self.shortest, self.scaled = rule.ratio or 0.0, rule.shortest_excursion, rule.scaled
+        self.unseen = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
+        self.rates, self.slip, self.arm = np.zeros(size), slip, p.l0r
         self.places = np.array([place for place, _, _ in turnings], dtype=np.intc)
         self.offsets = np.array([offset for _, _, offset in turnings], dtype=float)
 
+    def inertia(self, y, left, offset):
+        """The inertia of the rotation with free modes about a pivot: I_θ - Σ m* h*², in complete models with D."""
+        i: cython.int
+        if self.complete:
+            for i in range(self.n):
+                left += self.mass[i] * y[i] * (y[i] - 2.0 * offset)
+        return left
+
     def energy(self, y, inertia):
         """The kinetic energy at θ = 0, without the inertia terms of D: ½ I_f θ'² + ½ Σ m* (D' + h* θ')²."""
-        n: cython.int = self.own.n
+        n: cython.int = self.n
         i: cython.int
         velocity: cython.double
         spin: cython.double = y[2 * n + 1]
         total: cython.double = 0.5 * inertia * spin * spin
         for i in range(n):
-            velocity = y[n + i] + self.own.height[i] * spin
-            total += 0.5 * self.own.mass[i] * velocity * velocity
+            velocity = y[n + i] + self.height[i] * spin
+            total += 0.5 * self.mass[i] * velocity * velocity
         return total
 
-    def apply(self, y, a, a_v):
-        """Apply the law; 1 if rocking goes on, unless the next excursion would be too short to count."""
-        n: cython.int = self.own.n
+    def share(self, y, before, after):
+        """θ'_a/θ'_b, from the inertias with free modes; below zero where the guard acts.
+
+        By momentum about the new pivot it is (H - κ K)/(J - κ K), see `LandingRule`.
+        """
         i: cython.int
+        lean: cython.double = -self.total_mass * self.new_offset  # m s B + U
+        locked: cython.double = 0.0 if self.follows else self.modal_inertia
+        share: cython.double = self.passes
+        spin: cython.double = y[2 * self.n + 1]
+        flow: cython.double = 0.0
+        lost: cython.double
+        if not self.measured:
+            for i in range(self.n if self.complete else 0):
+                lean += self.mass[i] * y[i]
+            share = 1.0 - (self.own_offset - self.new_offset) * lean / (after + locked)
+        if self.guarded:
+            for i in range(self.n):
+                flow += self.mass[i] * self.height[i] * y[self.n + i]
+            lost = 0.5 * (before + locked - share * share * (after + locked)) * spin + (1.0 - share) * flow
+            if lost * spin < 0.0:
+                return -1.0
+            if self.slip >= 0 and (lost + (1.0 - share) * self.arm * y[self.slip]) * spin < 0.0:
+                return -1.0  # the ground would push the base on as it slides
+        elif not self.measured:
+            return max(share, 0.0)
+        return share
+
+    def apply(self, y, a, a_v):
+        """Apply the rule; 1 if rocking goes on, unless the next excursion would be too short to count; 2 if guarded."""
+        n: cython.int = self.n
+        i: cython.int
+        found: cython.int = 0
         moving: cython.double = 0.0
-        before: cython.double = self.energy(y, self.own.inertia_left(y))
+        inertia: cython.double = self.inertia(y, self.own_left, self.own_offset)
+        before: cython.double = self.energy(y, inertia)
         spin: cython.double = y[2 * n + 1]
-        passed: cython.double = self.passes * spin
+        share: cython.double = self.share(y, inertia, self.inertia(y, self.new_left, self.new_offset))
+        follows: cython.bint = self.follows
+        passed: cython.double
+        if share < 0.0:
+            share, follows, found = 0.0, True, 2
+        passed = share * spin
         y[2 * n] = 0.0
         for i in range(self.places.shape[0]):
             y[self.places[i]] = -self.offsets[i]
         for i in range(n):
-            y[n + i] += self.own.height[i] * (spin - passed)
-            moving += self.own.mass[i] * y[n + i] * y[n + i]
+            if follows:
+                y[n + i] += self.height[i] * (spin - passed)
+            moving += self.mass[i] * y[n + i] * y[n + i]
         if self.scaled and moving > 0.0:
             moving = sqrt(1.0 + self.unseen * spin * spin / moving)
             for i in range(n):
                 y[n + i] *= moving
         y[2 * n + 1] = passed
         if passed != 0.0:
-            if self.energy(y, self.beyond.inertia_left(y)) > before * (1.0 + GAIN):
+            if self.energy(y, self.inertia(y, self.new_left, self.new_offset)) > before * (1.0 + GAIN):
                 return -1
             if cython.compiled:
                 self.beyond.rates(y, a, a_v, cython.address(self.rates[0]), False)
             else:
                 self.beyond.rates(y, a, a_v, self.rates, False)
-            if 2.0 * fabs(passed) >= -self.beyond.side * self.rates[2 * n + 1] * self.shortest:
+            if 2.0 * fabs(passed) >= self.side * self.rates[2 * n + 1] * self.shortest:
                 return 1
             for i in range(n):
-                y[n + i] += self.own.height[i] * passed
+                y[n + i] += self.height[i] * (passed if follows else spin)
             y[2 * n + 1] = 0.0
-        return -1 if self.energy(y, 0.0) > before * (1.0 + GAIN) else 0
+        return -1 if self.energy(y, 0.0) > before * (1.0 + GAIN) else found
 
     def error(self):
         """Return the exception after a gain of energy."""

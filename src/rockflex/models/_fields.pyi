@@ -3,6 +3,8 @@ from collections.abc import Callable, Sequence
 from rockflex.engine.field import Field, Jump
 from rockflex.foundation.arrays import Array
 from rockflex.models._field_numbers import FieldNumbers
+from rockflex.models._impact import LandingRule
+from rockflex.structure._rocking import RockingProperties
 
 class RockingField(Field):
     def __init__(
@@ -20,15 +22,20 @@ class RockingField(Field):
     def imbalance_along(self, states: Array, rates: Array, a: Array, a_v: Array) -> Array: ...
     def inertia_at(self, y: Array) -> float: ...
 
+class LinearTurn(Field):
+    def __init__(self, row: Array, vertical: Array, spin: int) -> None: ...
+
 class Landing(Jump):
     def __init__(
         self,
         gains: Callable[[], BaseException],
-        own: RockingField,
-        beyond: RockingField,
-        e: float,
-        shortest: float,
-        unseen: float | None,
+        properties: RockingProperties,
+        side: int,
+        complete: bool,
+        rule: LandingRule,
+        beyond: Field,
+        size: int,
+        slip: int,
         turnings: Sequence[tuple[int, float, float]],
     ) -> None: ...
 

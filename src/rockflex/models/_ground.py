@@ -129,6 +129,7 @@ def check_base_on_ground(properties: RockingProperties, ground: Ground) -> None:
     """
     if ground.springs is not None:
         _check_under_base(properties, ground.springs)
+        _check_inertia(properties, float(ground.base_inertia or 0.0))
         _check_upright(properties, ground.springs)
     if any(each.sticks for each in properties.elements):
         what = "slides" if ground.springs is None else "stands on springs"
@@ -148,6 +149,19 @@ def _check_under_base(properties: RockingProperties, springs: Springs) -> None:
             f"masses, but their positions reach from {springs.positions[0]:.6g} to {springs.positions[-1]:.6g} m. Move "
             "them, or use winkler_bed with the half_width and the eccentricity of the structure.",
             field="positions",
+        )
+
+
+def _check_inertia(properties: RockingProperties, base_inertia: float) -> None:
+    """Raise an InputError if nothing but flexure resists the rotation of the base."""
+    p = properties
+    own = p.translational_inertia - float(np.sum(p.effective_mass * p.effective_height**2))
+    if own + base_inertia <= SAME * p.translational_inertia:
+        raise InputError(
+            f"A base_inertia of {base_inertia:g} kg m² leaves the base no inertia against rotation: the structure has "
+            "all its modes, and no rotary inertia of its own as a rigid_block has. Give that of base and floors; for a "
+            "mat of mass m and width 2B it is m (2B)²/12.",
+            field="base_inertia",
         )
 
 

@@ -1,25 +1,50 @@
-"""The jump at an impact whose law is not linear, or a user's own: a function of the state, for `rockflex.engine`."""
+"""The jump at an impact for `rockflex.engine`: compiled for laws of the package, a function for a user's own."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from rockflex.engine.field import Field
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite, checked_finite_vector
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import shown
-from rockflex.models._elements import CLOSED, RIGHT
-from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
+from rockflex.models._elements import CLOSED
+from rockflex.models._fields import Landing
+from rockflex.models._impact import SHORTEST_EXCURSION, ImpactLaw, LandingRule, RuledLaw, takes_displacement
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._rocking import RockingProperties
 
+GUARDED = "guarded impact"  # counts the impacts at which the guard of a law acts
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 
 
 class GainsEnergyError(SolverError):
     """An impact law returns more energy than there was."""
+
+
+def rule_of_law(law: ImpactLaw, side: int) -> LandingRule | None:
+    """Return the rule of a law of the package for the landing that ends rocking on a side; None of a user's own."""
+    if isinstance(law, RuledLaw) and type(law).after is RuledLaw.after:
+        return law.rule_of(side)
+    return None
+
+
+def landing_of_rule(
+    model: RockingModel,
+    side: int,
+    rule: LandingRule,
+    beyond: Field,
+    size: int,
+    turnings: Sequence[tuple[int, float, float]] = (),
+) -> Landing:
+    """Return the compiled jump of a rule, with what `Landing` needs of θ'' beyond, of the states and of elements."""
+    error, slip = partial(landing_gains_energy_error, model), model.layout.slip
+    slip += slip >= 0
+    return Landing(error, model.properties, side, model.complete, rule, beyond, size, slip, turnings)
 
 
 def landing_gains_energy_error(model: RockingModel) -> GainsEnergyError:
@@ -29,19 +54,16 @@ def landing_gains_energy_error(model: RockingModel) -> GainsEnergyError:
 
 def landing_jump(
     model: RockingModel,
-    side: int,
     keys: Mapping[int, Key],
     inertia: Callable[[int, Array], float],
     turn: Callable[[int, Array, float, float], float],
 ) -> Callable[[Array, float, float], tuple[Array, Key]]:
-    """Return the jump at an impact, from the states [D, D', θ, θ', ..] and both accelerations.
+    """Return the jump of a user's own law, from the states [D, D', θ, θ', ..] and both accelerations.
 
     Parameters
     ----------
     model
         The model, with its law.
-    side
-        The side to which the base was rotated.
     keys
         The phases that may follow, by side.
     inertia
@@ -54,7 +76,7 @@ def landing_jump(
     callable
         It raises `GainsEnergyError` if the law returns energy, and `InputError` if the law fails.
     """
-    p, shortest = model.properties, shortest_excursion(impact_law_of_side(model.law, side))
+    p, displaced, straight = model.properties, takes_displacement(model.law), np.zeros(model.properties.n_modes)
     N, height, mass = p.n_modes, p.effective_height, p.effective_mass
     modes, rotation, spin = slice(N, 2 * N), 2 * N, 2 * N + 1
 
@@ -63,14 +85,15 @@ def landing_jump(
         return 0.5 * inertia * state[spin] ** 2 + 0.5 * float(mass @ velocity**2)
 
     def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
-        before = energy(state, inertia(side, state))
-        velocity, passed = velocities_after(model.law, p, state[modes], float(state[spin]))
+        before = energy(state, inertia(-1 if state[spin] > 0.0 else 1, state))
+        leaning = (state[:N] if model.complete else straight,) if displaced else ()
+        velocity, passed = velocities_after(model.law, p, state[modes], float(state[spin]), *leaning)
         after, onto = state.copy(), int(np.sign(passed))
         after[modes], after[rotation], after[spin] = velocity, 0.0, passed
         gained = energy(after, inertia(onto, after) if onto != CLOSED else 0.0) - before
         if onto != CLOSED:
             back = -onto * turn(onto, after, acceleration, vertical)
-            if 2.0 * abs(passed) < back * shortest:
+            if 2.0 * abs(passed) < back * SHORTEST_EXCURSION:
                 after[modes] += height * passed
                 after[spin], onto = 0.0, CLOSED
         if gained > GAIN * before:
@@ -95,24 +118,12 @@ def rotation_acceleration_by_rows(
     return turn
 
 
-def impact_law_of_side(law: ImpactLaw, side: int) -> ImpactLaw:
-    """Return the law of the edge about which the base rotates on a side."""
-    if isinstance(law, SidedRestitution):
-        return law.right if side == RIGHT else law.left
-    return law
-
-
-def shortest_excursion(law: ImpactLaw) -> float:
-    """Return the duration in s below which an excursion after an impact does not count."""
-    return law.shortest_excursion if isinstance(law, Restitution) else Restitution(0.0).shortest_excursion
-
-
 def velocities_after(
-    law: ImpactLaw, properties: RockingProperties, velocity: Array, spin: float
+    law: Any, properties: RockingProperties, velocity: Array, spin: float, *displacement: Array
 ) -> tuple[Array, float]:
     """Return the velocities after an impact that a law gives, checked; raises `InputError` if it fails."""
     try:
-        found, turn = _pair(law.after(properties, velocity.copy(), spin))
+        found, turn = _pair(law.after(properties, velocity.copy(), spin, *(each.copy() for each in displacement)))
         checked = checked_finite_vector("the modal velocity after an impact", found, "m/s")
         if checked.size != velocity.size:
             raise InputError(

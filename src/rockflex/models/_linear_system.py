@@ -24,8 +24,14 @@ from rockflex.models._elements import (
     is_in_reach,
     rate_of_elongation_row,
 )
-from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
+from rockflex.models._fields import LinearTurn
+from rockflex.models._landing import (
+    GUARDED,
+    landing_jump,
+    landing_of_rule,
+    rotation_acceleration_by_rows,
+    rule_of_law,
+)
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, joined_quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
@@ -385,21 +391,26 @@ class LinearOnRigidGround(LinearSystemBase):
         """The impact, after which rocking may go on to the other side."""
         model, side = self.model, key[0]
         contact, other = self.beside(key, CLOSED), self.beside(key, -side)
-        row, law = side * self.unit(model.layout.rotation), impact_law_of_side(model.law, side)
-        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+        row, rule = side * self.unit(model.layout.rotation), rule_of_law(model.law, side)
+        share = None if rule is None else rule.fixed_share(model.properties, side)
+        if share == 0.0:
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
-        if not isinstance(law, Restitution) or self._gains(side, law):
+        if rule is None:
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
             turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
             jump = landing_jump(
-                model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
+                model, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
             )
             return self.event("impact", row, contact, QUARTER_TURN, jump)
-        back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
+        if share is None or self._gains(side, share):
+            beyond = LinearTurn(self.turn(other), self.turn_by_weight(other), model.layout.spin)
+            jump = landing_of_rule(model, side, rule, beyond, self.layout.size)
+            return replace(self.event("impact", row, contact, QUARTER_TURN, jump), other=other, noted=GUARDED)
+        back = rule.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
         back[model.layout.spin] += 2.0 * side
         n = self.layout.size
         rest = Rest(-back[:n], contact, -float(back[n + 1]), -float(back[n]), self.struck(0.0))
-        return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(law.e), rest=rest)
+        return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(share), rest=rest)
 
     def beside(self, key: Key, side: int) -> Key:
         """The phase after an impact, on one side or in contact."""
@@ -426,9 +437,9 @@ class LinearOnRigidGround(LinearSystemBase):
         found[layout.spin, layout.spin] = e
         return found
 
-    def _gains(self, side: int, law: Restitution) -> bool:
+    def _gains(self, side: int, e: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return law.e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
+        return e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,10 +25,9 @@ from rockflex.models._elements import (
     is_in_reach,
 )
 from rockflex.models._field_numbers import field_numbers
-from rockflex.models._fields import Change, Landing, Reversal, RockingField
+from rockflex.models._fields import Change, Reversal, RockingField
 from rockflex.models._ground_fields import GroundField
-from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
-from rockflex.models._landing import impact_law_of_side, landing_gains_energy_error, landing_jump, shortest_excursion
+from rockflex.models._landing import GUARDED, landing_jump, landing_of_rule, rule_of_law
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
@@ -293,33 +291,21 @@ class NonlinearRockingPhases:
 
     def ends(self, key: Key) -> tuple[Event, Event]:
         """The landing, after which rocking may go on about the other edge, and overturning."""
-        side, law = key[0], impact_law_of_side(self.model.law, key[0])
+        side, rule = key[0], rule_of_law(self.model.law, key[0])
         contact, other = self.beside(key, CLOSED), self.beside(key, -side)
         tips = Event("overturning", self.rotation(-side), None, QUARTER_TURN, scale=QUARTER_TURN)
-        own, beyond = self.field(key), self.field(other)
-        known = isinstance(law, VVELSimplified | VVELComplete | Restitution)
-        if not known or not isinstance(own, RockingField) or not isinstance(beyond, RockingField):
+        if rule is None:
             return Event("impact", self.rotation(side), contact, jump=self.landing(key)), tips
-        p = self.model.properties
-        unseen = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
-        jump = Landing(
-            partial(landing_gains_energy_error, self.model),
-            own,
-            beyond,
-            law.e if isinstance(law, Restitution) else 0.0,
-            shortest_excursion(law),
-            unseen if isinstance(law, VVELComplete) else None,
-            self.turnings(self.base_of(key)),
-        )
-        return Event("impact", self.rotation(side), contact, jump=jump, other=other), tips
+        turnings = self.turnings(self.base_of(key))
+        jump = landing_of_rule(self.model, side, rule, self.field(other), self.model.layout.size, turnings)
+        return Event("impact", self.rotation(side), contact, jump=jump, other=other, noted=GUARDED), tips
 
     def landing(self, key: Key) -> Callable[[Array, float, float], tuple[Array, Key]]:
-        """The jump of a law of the user's own, or of a base that slides, at which elements cease to yield."""
+        """The jump of a law of the user's own, at which elements cease to yield."""
         spin, turnings = self.model.layout.spin, self.turnings(self.base_of(key))
         fields = {side: self.field(self.beside(key, side)) for side in (RIGHT, LEFT)}
         land = landing_jump(
             self.model,
-            key[0],
             {side: self.beside(key, side) for side in (CLOSED, RIGHT, LEFT)},
             lambda side, state: fields[side].inertia_at(state),
             lambda side, state, a, a_v: float(fields[side].rates_at(state, a, a_v)[spin]),

@@ -19,7 +19,7 @@ from rockflex.engine.system import MAX_STATES, StepTooLongError, System
 from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
-from rockflex.models._landing import GainsEnergyError
+from rockflex.models._landing import GUARDED, GainsEnergyError
 from rockflex.models._linear_system import LinearSystemBase, linear_system_base, linear_system_of
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._nonlinear_system import nonlinear_system_key, states_with_branch_codes
@@ -35,7 +35,7 @@ SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 256  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
-COUNTED = ("uplift", "impact")
+COUNTED = ("uplift", "impact", GUARDED)
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
 )
@@ -371,8 +371,8 @@ def without_reversals(times: Array, keys: Sequence[Key], places: Integers) -> Bo
 def _ends_of(batch: Batch, states: Array, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
     """How the runs have ended; those that were not allowed are left out."""
     status, samples = OUTCOMES[int(settles)][batch.outcomes], np.rint(batch.times / dt).astype(np.int64)
-    uplifts, impacts = batch.counts.T
-    found = Ends(status, samples, uplifts, impacts, batch.high, batch.when, states)
+    uplifts, impacts, guarded = batch.counts.T
+    found = Ends(status, samples, uplifts, impacts, guarded, batch.high, batch.when, states)
     if len(allowed) == count:
         return found
     return Ends(*(_spread(each, allowed, count) for each in found))

@@ -10,8 +10,14 @@ from rockflex.engine.tables import by_rows
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.constants import GRAVITY
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
-from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
+from rockflex.models._fields import LinearTurn
+from rockflex.models._landing import (
+    GUARDED,
+    landing_jump,
+    landing_of_rule,
+    rotation_acceleration_by_rows,
+    rule_of_law,
+)
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 from rockflex.models._rocking_model import RockingModel
@@ -25,7 +31,8 @@ def may_stack(model: RockingModel) -> bool:
     p = model.properties
     numbers = np.abs((*p.omega, p.i_theta, p.l0r, p.m_tot, p.half_width))
     usual = bool((numbers > SMALL).all() and (numbers < LARGE).all())  # what overflows is told of one model
-    return usual and (not model.lifts or type(model.law) is VVELSimplified)
+    rules = [(side, rule_of_law(model.law, side)) for side in (RIGHT, LEFT) if model.lifts]
+    return usual and all(rule is not None and rule.fixed_share(p, side) == 0.0 for side, rule in rules)
 
 
 def system_on_rigid_ground(models: Sequence[RockingModel], quantities: Sequence[Quantities]) -> System:
@@ -186,22 +193,30 @@ class RigidGround:
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, law = side * self.rotation()[:, 0, :-2], impact_law_of_side(self.model.law, side)
-        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+        row, model, rule = side * self.rotation()[:, 0, :-2], self.model, rule_of_law(self.model.law, side)
+        share = None if rule is None else rule.fixed_share(model.properties, side)
+        if share == 0.0:
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
-        if not isinstance(law, Restitution) or self.gains(side, law):
+        if rule is None:
             turns = {each: (self.turn(each)[0], self.turn_by_weight(each)[0]) for each in (RIGHT, LEFT)}
-            model, keys = self.model, {CLOSED: CONTACT, **ALONE}
             jump = landing_jump(
-                model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
+                model,
+                {CLOSED: CONTACT, **ALONE},
+                lambda each, _: model.free_inertia(each),
+                rotation_acceleration_by_rows(turns),
             )
             return Event("impact", row, CONTACT, jump=jump)
+        if share is None or self.gains(side, share):
+            spin = 2 * self.omega.shape[1] + 1
+            beyond = LinearTurn(self.turn(-side)[0], self.turn_by_weight(-side)[0], spin)
+            jump = landing_of_rule(model, side, rule, beyond, spin + 1)
+            return Event("impact", row, CONTACT, jump=jump, other=ALONE[-side], noted=GUARDED)
         turn = self.turn(-side)
-        back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
+        back = rule.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
         back[:, -3] += 2.0 * side
-        more = law.shortest_excursion * side * self.turn_by_weight(-side)
+        more = rule.shortest_excursion * side * self.turn_by_weight(-side)
         rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0), -more[:, :-2], -more[:, -1])
-        return Event("impact", row, ALONE[-side], jump=self.struck(law.e), rest=rest)
+        return Event("impact", row, ALONE[-side], jump=self.struck(share), rest=rest)
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
@@ -211,6 +226,6 @@ class RigidGround:
         found[:, N : 2 * N, -1], found[:, -1, -1] = (1.0 - e) * self.height, e
         return found
 
-    def gains(self, side: int, law: Restitution) -> bool:
+    def gains(self, side: int, e: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return bool((law.e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
+        return bool((e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())

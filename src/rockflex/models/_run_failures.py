@@ -36,8 +36,12 @@ def failure_of_limit(task: Task, samples: int, work_limit: float | None, state: 
 
 
 def _in_state(model: RockingModel, what: str, mend: str, state: Array) -> SolverError:
-    values = ", ".join(f"{value:.6g}" for value in state[: model.layout.core])
-    return SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
+    layout, given = model.layout, [f"{value:.6g}" for value in state[: model.layout.core]]
+    modes = [("D", given[: layout.modes]), ("D'", given[layout.modes : layout.rotation])] if layout.modes else []
+    told = [f"{name} = [{', '.join(values)}]" for name, values in modes]
+    others = ["θ", "θ'", *(["x", "x'"] if layout.slip >= 0 else []), *(["z", "z'"] if layout.heave >= 0 else [])]
+    told += [f"{name} = {value}" for name, value in zip(others, given[layout.rotation :], strict=True)]
+    return SolverError(f"{what} The state there is {', '.join(told)}. {mend}")
 
 
 def explaining_engine_failures(model: RockingModel) -> AbstractContextManager[None]:

@@ -191,7 +191,15 @@ OUTPUTS: Mapping[str, Output] = {
     "n_impacts": Output(
         "impacts", "count", "number of impacts", ". On springs: how often an edge comes back to that level"
     ),
+    "guarded_impacts": Output(
+        "guarded", "ratio", "share of the impacts at which the guard of the impact law acted",
+        ": where `AngularMomentum` would gain energy or turn back; zero with every other law",
+    ),
     "nominal_overturning": Output("†", "flag", "whether |θ| exceeded 0.7 atan(B/h*_1)", " (Section 3.3)"),
+    "may_fall": Output(
+        "", "flag", "whether the run ends while the base may still overturn",
+        ": while θ grows beyond all before, or with energy enough to pass α, as of a rigid body",
+    ),
     "end_time": Output("end", "time", "time of the last state"),
     "settled": Output("", "flag", "whether the run ended at rest", " (``free_vibration=\"settle\"``)"),
 }  # fmt: skip

@@ -24,8 +24,44 @@ from rockflex.models._named_quantities import (
 )
 from rockflex.models._quantities import LIFT, LINEAR, Quantities, joined_quantities
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._state_layout import HEADER, SIDE
+from rockflex.models._state_layout import HEADER, SIDE, StateLayout
 from rockflex.models._values_at_states import quantities_at_states
+from rockflex.structure._rocking import RockingProperties
+
+LAST = 1e-9  # relative: a rotation as close to the largest one is it
+
+
+def may_fall(
+    properties: Sequence[RockingProperties], layout: StateLayout, final: Array, turned: Array, rocking: Bools
+) -> Bools:
+    """Return whether the bases of R runs may still overturn after their last states, shape (R,).
+
+    A run that ends rocking may if θ is at its largest there and still grows, or if its energy, as of a rigid body with
+    the angular momentum of the last instant, suffices to pass the rotation at which the static moment vanishes.
+
+    Parameters
+    ----------
+    properties
+        Of each run.
+    layout, final
+        Of the states, and the last ones, shape (R, S).
+    turned
+        Largest |θ| of each run in rad, shape (R,).
+    rocking
+        Whether each run rocked, and neither overturned nor came to rest, shape (R,).
+    """
+    found, spins = np.zeros(len(properties), dtype=np.bool_), final[:, layout.rotation + 1]
+    angles, velocities = final[:, layout.rotation], final[:, layout.modes : 2 * layout.modes]
+    for k in np.flatnonzero(rocking & (angles != 0.0)).tolist():
+        p = properties[k]
+        pivot = p.pivot(1 if angles[k] > 0.0 else -1)
+        momentum = pivot.i_theta * spins[k] + float((p.effective_mass * p.effective_height) @ velocities[k])
+        ahead = pivot.balance_rotation - abs(angles[k])
+        falls = pivot.rocking_stiffness < 0.0 and (
+            ahead <= 0.0 or momentum**2 > -pivot.rocking_stiffness * pivot.i_theta * ahead**2
+        )
+        found[k] = falls or (angles[k] * spins[k] > 0.0 and abs(angles[k]) >= turned[k] * (1.0 - LAST))
+    return found
 
 
 def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:

@@ -25,6 +25,7 @@ from rockflex.response._peaks import (
     element_peaks,
     largest_edge_moves,
     largest_rotations,
+    may_fall,
 )
 from rockflex.response._response import PEAKS, Response
 
@@ -63,8 +64,18 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         max_edge_settlement=settlement,
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
+        guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
         nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
         or left > p.pivot(-1).nominal_overturning_rotation,
+        may_fall=bool(
+            may_fall(
+                [p],
+                model.layout,
+                final[None],
+                np.array([rotation]),
+                np.array([status == "rocking" and not (solution.overturned or solution.settled)]),
+            )[0]
+        ),
         end_time=solution.end_time,
         settled=solution.settled,
         floors=_floor_peaks(model, solution, peaks),
@@ -183,7 +194,15 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "max_edge_uplift": 2.0 * half_width * lever,
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
+        "guarded_impacts": solutions.guarded_impacts,
         "nominal_overturning": (right > nominal_right) | (left > nominal_left),
+        "may_fall": may_fall(
+            [each.properties for each in models],
+            model.layout,
+            solutions.final_state,
+            peaks["rotation"],
+            rocks & ~(solutions.overturned | solutions.settled),
+        ),
         "end_time": solutions.end_time,
         "settled": solutions.settled,
     }

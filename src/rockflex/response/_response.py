@@ -17,6 +17,8 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.units import UnitSystem
 from rockflex.foundation.values import Value
+from rockflex.models._impact import restitution_left
+from rockflex.models._rocking_model import RockingModel
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
@@ -26,6 +28,7 @@ from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
 
 FALLEN = 1.57  # rad: an overturned run has a status of its own
+BARELY_LESS = 0.25  # of the velocity that a restitution takes, what the modes do not give back
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
 
@@ -59,6 +62,16 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 ratio=peaks["tendon_utilisation"],
             )
         )
+    if peaks["may_fall"]:
+        found.append(
+            translated(
+                "The run ends at {time:.4g} s while the base may still fall: θ is {rotation} there, the largest of the "
+                "run and growing, or has energy enough to pass α. Its peak, and whether it overturns, is open. "
+                'Continue the run with free_vibration="settle".',
+                time=peaks["end_time"],
+                rotation=text("residual_rotation"),
+            )
+        )
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
         found.append(
             translated(
@@ -90,9 +103,28 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
     )
 
 
+def warnings_of_law(model: RockingModel) -> tuple[str, ...]:
+    """Return a text if the restitution of a flexible structure hardly lets its rocking decay, and may mean another."""
+    left = restitution_left(model.law, model.properties) if model.lifts and model.springs is None else None
+    given, effective = left or (0.0, 0.0)
+    if given == 0.0 or 1.0 - effective > BARELY_LESS * (1.0 - given):
+        return ()
+    return (
+        translated(
+            "The restitution {given:.4g} is that of θ' at the instant of an impact. The modes give back most of what "
+            "the rotation loses then: from one half cycle to the next {effective:.4g} of its velocity is left. If the "
+            "value was measured in a free rocking test, give AngularMomentum({given:.4g}).",
+            given=given,
+            effective=effective,
+        ),
+    )
+
+
 def warnings_of_run(run: "Response", units: UnitSystem = SI) -> tuple[str, ...]:
     """Return the warnings of the peaks and, of a run with a history, of its energies."""
     found = warnings_of_response(run.model, run.peaks(), units)
+    if run.history is not None:
+        found += warnings_of_law(run.history.model)
     try:
         return found if run.history is None else (*found, *warnings_of_energy(run.history.energy.closing_error))
     except InputError:  # too fast for the sampling: no energies
@@ -229,7 +261,9 @@ class Response(HtmlTable, Value):
     max_edge_settlement: float
     n_uplifts: int
     n_impacts: int
+    guarded_impacts: float
     nominal_overturning: bool
+    may_fall: bool
     end_time: float
     settled: bool
     max_element_force: Array
@@ -297,9 +331,12 @@ class Response(HtmlTable, Value):
         pass  # its arrays are read-only already, and every run of a study creates a response
 
     def __repr__(self) -> str:
+        model = None if self.history is None else self.history.model
+        left = None if model is None else restitution_left(model.law, model.properties)
+        law = "" if left is None else f", effective restitution {left[1]:.4g}"
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
-            f"u_top,max={self.max_top_displacement:.4g} m, {number_with_noun(self.n_impacts, 'impact')})"
+            f"u_top,max={self.max_top_displacement:.4g} m, {number_with_noun(self.n_impacts, 'impact')}{law})"
         )
 
     def _shown_as(self) -> dict[str, Any]:

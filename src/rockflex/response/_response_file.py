@@ -56,6 +56,7 @@ PROPERTIES = (
     "translational_inertia",
 )
 KNOWN_OR_NOT = ("top_height", "base_mass")
+LATER: dict[str, Any] = {"guarded_impacts": 0.0, "may_fall": False}  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
@@ -117,7 +118,7 @@ def load_response(path: Path, kinds: dict[str, type]) -> Kept:
         raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:
         arrays = arrays_from_npz(path, _LIMITS)
-        scalars = json.loads(str(arrays["response"]))
+        scalars = LATER | json.loads(str(arrays["response"]))
         kept = _response_from_file(scalars, arrays, kinds) if scalars["format"] == FORMAT else None
     except Exception as error:  # NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"

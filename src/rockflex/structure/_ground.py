@@ -151,10 +151,10 @@ class Ground(Value):
         Springs under the base. Default: the ground is rigid. The weight has the moment L_0^r (g + a_v) θ under vertical
         shaking; the moment of the heave, L_0^r z'' θ, is not modelled.
     base_inertia : float or None
-        Rotary inertia I_b of the base and the floors about the axis of the masses in kg m², positive. Given with
-        springs, and only then: on rigid ground it is part of I_θ. The inertia Σ m_i h_i² of the structure is added to
-        it; that of a `rigid_block` already includes the rotary inertia of the block itself, so that only what the block
-        leaves out counts here.
+        Rotary inertia I_b of the base and the floors about the axis of the masses in kg m², zero or positive. Given
+        with springs, and only then: on rigid ground it is part of I_θ. The inertia Σ m_i h_i² of the structure is added
+        to it; that of a `rigid_block` already includes the rotary inertia of the block itself, so that zero belongs
+        here.
 
     Raises
     ------
@@ -280,12 +280,14 @@ def _checked_base_inertia(springs: Springs | None, given: float | None) -> float
     if given is None:
         raise InputError(
             "A base without rotary inertia on springs has no inertia against rotation once all modes are included. "
-            f"Give base_inertia in kg m², the rotary inertia of base and floors; {_MAT_HINT}.",
+            f"Give base_inertia in kg m², the rotary inertia of base and floors; {_MAT_HINT}. Give 0 where the "
+            "structure has its own, as a rigid_block does: it would count twice.",
             field="base_inertia",
         )
-    if not 0.0 < real_or_nan(given) < math.inf:
+    if not 0.0 <= real_or_nan(given) < math.inf:
         raise InputError(
-            f"base_inertia must be a positive, finite number in kg m², but {shown(given)} was given; {_MAT_HINT}.",
+            "base_inertia must be a zero or positive, finite number in kg m², but "
+            f"{shown(given)} was given; {_MAT_HINT}.",
             field="base_inertia",
         )
     return real_or_nan(given)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_magnitude, checked_mode_count, is_one_of
+from rockflex.foundation.checks import checked_mode_count, is_one_of, real_or_nan
 from rockflex.foundation.constants import MOST_MODES
 from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
@@ -350,10 +350,12 @@ def rigid_block(
         b, h = 0.5 * width, 0.5 * height
         r, moment = math.hypot(b, h), mass * h
     else:
-        alpha = checked_magnitude("slenderness", 0.0 if slenderness is None else slenderness, 0.5 * math.pi, "rad")
-        if alpha <= 0.0:
+        alpha = real_or_nan(slenderness)
+        if not 0.0 < alpha < 0.5 * math.pi:
+            hint = f" An aspect ratio h/b of {alpha:g} is {math.atan(1.0 / alpha):.4g} rad." if alpha > 1.0 else ""
             raise InputError(
-                f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
+                f"slenderness must be above 0 and below π/2 = 1.5708 rad, but {shown(slenderness)} was given. It is "
+                f"atan(b/h) of the half sides.{hint}",
                 field="slenderness",
             )
         r = half_diagonal or 0.0

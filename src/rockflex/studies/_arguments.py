@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from inspect import signature
 from numbers import Real
 from typing import Any, Literal, Protocol, TypeAlias, cast, get_args
 
@@ -16,7 +17,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.foundation.values import Value
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import ImpactLaw
+from rockflex.models._impact import LAWS, ImpactLaw, RuledLaw
 from rockflex.models._label import Model, parse_model
 from rockflex.models._rocking_model import RockingModel
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
@@ -84,6 +85,12 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     return seconds
 
 
+def _law_call(law: type[RuledLaw]) -> str:
+    """Return how a law is made, with its restitution if it needs one."""
+    needed = [each.name for each in signature(law).parameters.values() if each.default is each.empty]
+    return f"{law.__name__}({', '.join(needed)})"
+
+
 def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: GroundChoice = None) -> None:
     """Raise an InputError unless `bouc_wen` is a BoucWen, `impact` an impact law and `ground` a ground, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -93,10 +100,9 @@ def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground
         )
     if impact is not None and (isinstance(impact, type) or not isinstance(impact, ImpactLaw)):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
-            f"impact must be an impact law, but {type_description(impact)} was given. Give VVELSimplified(), "
-            "VVELComplete(), "
-            "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
-            "rotation_velocity)`."
+            f"impact must be an impact law, but {type_description(impact)} was given. Give "
+            f"{', '.join(_law_call(each) for each in LAWS.values())}, or an object with `keeps`, `loses` and "
+            "`after(properties, modal_velocity, rotation_velocity, modal_displacement)`."
         )
     if ground is not None and (isinstance(ground, type) or not (isinstance(ground, Ground) or callable(ground))):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(

@@ -25,7 +25,7 @@ from rockflex.foundation.json import as_json_value
 from rockflex.foundation.schema import IMPACT, ImpactSchema, LawName, ReportKeys
 from rockflex.foundation.shown import shown
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._impact import LAWS, ImpactLaw
+from rockflex.models._impact import LAWS, ImpactLaw, law_of_name, unused_restitution_error
 from rockflex.models._label import Model, parse_model
 from rockflex.motion._columns import record_csv
 from rockflex.motion._ground_motion import GroundMotion
@@ -85,24 +85,16 @@ class RunOptionKeys(ImpactSchema, TomlTable):
 
     def law(self) -> ImpactLaw | None:
         """Return the impact law; None for the model's own."""
-        if self.impact == "restitution" and self.restitution is None:
-            raise InputError(
-                'The impact law "restitution" needs its coefficient. Give restitution, a number from 0 to 1.',
-                field="restitution",
-            )
-        if self.restitution is not None and self.impact != "restitution":
-            chosen = "the model's own" if self.impact is None else shown(self.impact)
-            raise InputError(
-                f"A restitution of {self.restitution:g} was given, but the impact law is {chosen}. "
-                'Choose the impact law "restitution", or leave restitution out.',
-                field="restitution",
-            )
-        if self.impact is None:
-            return None
         if isinstance(self.impact, str):
             if self.impact not in LAWS:  # a copy with another law was not checked
                 raise InputError(f"impact must be {IMPACT.expected}, but {shown(self.impact)} was given.")
-            return LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
+            return law_of_name(self.impact, self.restitution)
+        if self.restitution is not None:
+            raise unused_restitution_error(
+                self.restitution, "the model's own" if self.impact is None else shown(self.impact)
+            )
+        if self.impact is None:
+            return None
         check_run_options(None, self.impact)
         return self.impact
 

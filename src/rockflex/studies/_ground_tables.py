@@ -135,7 +135,7 @@ class GroundTable(GroundSchema, TomlTable):
                 raise InputError(
                     "A base without rotary inertia on springs has no inertia against rotation once all modes are "
                     "included. Give mat_mass in kg for a rigid mat as wide as the base, or base_inertia in kg m² for "
-                    "base and floors together.",
+                    "base and floors together; base_inertia = 0 for a block, whose own would count twice.",
                     field="base_inertia",
                 )
             return self.base_inertia

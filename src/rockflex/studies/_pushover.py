@@ -17,7 +17,7 @@ def pushover(
     structure: RockingStructure | RockingProperties,
     top_displacement: float,
     *,
-    lifts: bool = False,
+    lifts: bool = True,
     pattern: ArrayLike | None = None,
 ) -> Pushover:
     """Push the floors of a structure slowly to the right, and return its base shear, drifts and what yields when.
@@ -35,7 +35,8 @@ def pushover(
     top_displacement
         Displacement of the highest floor relative to the ground in m to which it is pushed, positive.
     lifts
-        Whether the base may lift; otherwise it is fixed.
+        Whether the base may lift, as it can in every structure; False for a fixed base, as a `fit` of a superstructure
+        needs.
     pattern : array_like, shape (N,), or None
         Forces on the floors, bottom to top; only their ratios matter. Default: those of the first mode, M φ_1.
 
@@ -56,7 +57,7 @@ def pushover(
     ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
     ...     period=0.6, aspect_ratio=6.0, damping_ratio=0.03,
     ... )
-    >>> push = rf.pushover(rf.YieldingStories(frame, [150e3, 120e3, 70e3], 0.05), top_displacement=0.1)
+    >>> push = rf.pushover(rf.YieldingStories(frame, [150e3, 120e3, 70e3], 0.05), top_displacement=0.1, lifts=False)
     >>> [(each.name, round(each.base_shear / 1e3)) for each in push.events]
     [('story 2 yields', 150), ('story 1 yields', 150), ('story 3 yields', 157)]
     >>> round(push.fit().bouc_wen.yield_displacement, 4)

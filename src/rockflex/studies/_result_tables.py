@@ -123,13 +123,14 @@ REACTION = "min_vertical_reaction"
 
 
 class PivotLifts(NamedTuple):
-    """Numbers of runs that rock and stand, of those whose pivot would lift, and of those beyond α, of one case."""
+    """Numbers of runs of a case that rock and stand: all, whose pivot would lift, beyond α, and that may fall."""
 
     structure: str
     model: str
     rocking: int
     lifting: int
     beyond: int = 0
+    falling: int = 0
 
     def __str__(self) -> str:
         return " ".join(self.warnings)
@@ -164,11 +165,22 @@ class PivotLifts(NamedTuple):
                     complete=complete_model_label(self.model),
                 )
             )
+        if self.falling:
+            found.append(
+                translated(
+                    "{structure}, {model}: {k} of {n} runs that rock and stand end while the base may still fall "
+                    '(may_fall). Continue them with free_vibration = "settle".',
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.falling,
+                    n=self.rocking,
+                )
+            )
         return found
 
 
 def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
-    """Count the runs in which the vertical reaction falls below zero or a simplified θ passes α, by case.
+    """Count the runs in which the vertical reaction falls below zero, a simplified θ passes α, or more, by case.
 
     Parameters
     ----------
@@ -181,5 +193,6 @@ def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
         past = 0  # where a table of an earlier version does not tell
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())
-        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past))
+        falling = int(each["may_fall"].sum()) if "may_fall" in each else 0
+        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past, falling))
     return found

@@ -18,7 +18,7 @@ from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable, parse_toml_table
 from rockflex.studies._arguments import checked_structures, is_structure_or_properties, rocking_properties_of
 from rockflex.studies._case_keys import CaseKeys, FileStructure, GivenStructure, RunsKeys, validator_of_check
-from rockflex.studies._objects import Given, added_checksums, object_checksum
+from rockflex.studies._objects import added_checksums, object_checksum
 from rockflex.studies._plan import ChunkedPlan
 from rockflex.studies._record_tables import Moved
 from rockflex.studies._run_matrix import StudyMatrix, StudyOptions, check_different_values, checked_demands
@@ -111,7 +111,7 @@ class RunsStudySpec(RunsKeys, StudySpec):
         if not isinstance(self.impact, str | None):
             found |= object_checksum("impact", type(self.impact), "impact law")
         functions = {f"demand {name}": each for name, each in (self.demands or {}).items()}
-        functions["ground"] = self.ground.given if isinstance(self.ground, Given) else self.ground
+        functions["ground"] = getattr(self.ground, "given", None)
         for key, each in functions.items():
             found |= object_checksum(key, each, "function") if callable(each) else {}
         return found

@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex.foundation.json import as_json_value
+from rockflex.models._impact import LAWS
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._outline import SYMBOLS
 from rockflex.structure.file._element_tables import ELEMENTS
@@ -62,7 +63,7 @@ FIRST = {"structure": next(each["structure"] for each in PRESETS if "24 m" in ea
 
 
 def forms_of_structures() -> dict[str, Any]:
-    """Return the fields of every kind of structure and of element, the base and a hysteresis, and the presets."""
+    """Return the fields of every structure, element and base, the impact laws, a hysteresis, and the presets."""
     return as_json_value(
         {
             "kinds": {name: {"title": table.title, "fields": _form_fields(table)} for name, table in KINDS.items()},
@@ -71,6 +72,7 @@ def forms_of_structures() -> dict[str, Any]:
                 name: {"title": table.title, "fields": _form_fields(table)} for name, table in ELEMENTS.items()
             },
             "symbols": SYMBOLS,
+            "laws": [{"name": name, **each._asdict()} for name, law in LAWS.items() for each in law.choices],
             "bouc_wen": _form_fields(BoucWenTable),
             "ground": _form_fields(GroundTable),
             "section_part": _form_fields(PartTable),

@@ -234,8 +234,10 @@ def structure_keys(members: Mapping[str, bytes], row: StructureRow) -> dict[str,
     if isinstance(law, str):
         found |= {name: options[name] for name in ("impact", "restitution") if name in options}
     elif law is not None:
-        found["impact"] = _LAW_NAMES.get(str(law.get(CLASS)), law)
-        found |= {"restitution": law["e"]} if "e" in law else {}
+        name = _LAW_NAMES.get(str(law.get(CLASS)))
+        found["impact"] = name or law
+        given = law.get(LAWS[name].restitution_name()) if name else None
+        found |= {} if given is None else {"restitution": given}
     return found
 
 

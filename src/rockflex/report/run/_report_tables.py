@@ -16,7 +16,7 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import rounded_number
 from rockflex.foundation.shown import shown
 from rockflex.foundation.units import Unit, UnitSystem, named_unit
-from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.models._impact import RuledLaw, restitution_left
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response._history import History
@@ -306,7 +306,7 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
 def _assumption_lines_of_run(history: History, units: UnitSystem) -> list[tuple[str, str]]:
     """Return the assumptions of one run."""
     model = history.model
-    lines = [("Impact law", _impact_law_text(model.law))] if follows_impact_law(model) else []
+    lines = [("Impact law", _impact_law_text(model.law, model.properties))] if follows_impact_law(model) else []
     if model.bouc_wen is not None:
         lines.append(("Hysteresis", _hysteresis_text(model.bouc_wen, units)))
     lines += _ground_lines(model, units)
@@ -319,18 +319,11 @@ def follows_impact_law(model: Any) -> bool:
     return model.lifts and model.springs is None
 
 
-def _impact_law_text(law: Any) -> str:
-    if isinstance(law, Restitution):
-        return translated("Restitution, e = {e}", e=rounded_number(law.e))
-    if isinstance(law, SidedRestitution):
-        right, left = rounded_number(law.right.e), rounded_number(law.left.e)
-        return translated(
-            "Restitution, e = {right} from the right and {left} from the left edge", right=right, left=left
-        )
-    if isinstance(law, VVELSimplified):
-        return translated("Simplified (Silva & Stojadinović 2024, Eq. 25)")
-    if isinstance(law, VVELComplete):
-        return translated("Complete (Silva & Stojadinović 2024, Eq. 29)")
+def _impact_law_text(law: Any, properties: RockingProperties) -> str:
+    if isinstance(law, RuledLaw):
+        left = restitution_left(law, properties)
+        after = left and translated("{e} from one half cycle to the next", e=rounded_number(left[1], 4))
+        return f"{law.in_words()}{f'; {after}' if after else ''}"
     return getattr(law, "description", type(law).__name__)
 
 

@@ -5,18 +5,7 @@ import { h, symbol } from "../dom.js";
 import { select, slider, tableField, trouble } from "../form.js";
 import { t } from "../texts.js";
 
-const IMPACTS = [
-  ["", t("the one that each model has by itself")],
-  ["simplified", t("velocities of the masses are kept (simplified, Eq. 25)")],
-  ["complete", t("kinetic energy is kept (complete, Eq. 19)")],
-  ["restitution", t("part of the rotation goes on (restitution)")],
-];
-const IMPACT_HELP = {
-  "": t("The law sets the velocities after an impact."),
-  simplified: t("Conserves the horizontal velocity of each mass; the rotation stops."),
-  complete: t("Conserves the total horizontal kinetic energy; the rotation stops."),
-  restitution: t("Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge."),
-};
+const IMPACT_HELP = t("The law sets the velocities after an impact.");
 const FORCES = t("The impulse of an impact is not in the history of forces, and V_b and M_b are those of rigid ground: " +
   "on stiff springs with little damping, V_b of a flexural frame may be larger.");
 const RESTITUTION = 0.8; // default
@@ -29,10 +18,15 @@ export function runs(app, suggested) {
   const labels = models("models", app.state.models, app.about.limits.models, (value) => app.change({ models: value }));
   const free = slider("free_vibration", t("Free vibration after the record"), { low: 0, high: 60, step: 1, unit: "s" },
     app.state.free_vibration, (value) => app.change({ free_vibration: value }));
-  const impact = select("impact", t("Impact law"), IMPACTS, "", (value) => app.change({
-    impact: value || undefined,
-    restitution: value === "restitution" ? RESTITUTION : undefined,
-  }), { hint: `${IMPACT_HELP[""]} ${FORCES}` });
+  const { laws } = app.about; // a law with and without a restitution is there twice
+  const key = (law) => law.name + (laws.find((each) => each.name === law.name) === law ? "" : " e");
+  const chosen = (state) => laws.find((law) => law.name === state.impact && law.restitution === (state.restitution !== undefined))
+    ?? laws.find((law) => law.name === state.impact);
+  const listed = [["", t("the one that each model has by itself")], ...laws.map((law) => [key(law), t(law.title)])];
+  const impact = select("impact", t("Impact law"), listed, "", (value) => {
+    const law = laws.find((each) => key(each) === value);
+    app.change({ impact: law?.name, restitution: law?.restitution ? RESTITUTION : undefined });
+  }, { hint: `${IMPACT_HELP} ${FORCES}` });
   const restitution = slider("restitution", t("Coefficient of restitution"),
     { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
   const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
@@ -71,9 +65,10 @@ export function runs(app, suggested) {
     const { state } = app;
     labels.setValue(state.models, state.bouc_wen !== undefined);
     free.setValue(state.free_vibration);
-    impact.setValue(state.impact ?? "");
-    impact.querySelector(".hint").replaceChildren(...symbol(`${IMPACT_HELP[state.impact ?? ""]} ${FORCES}`));
-    restitution.hidden = state.impact !== "restitution";
+    const law = chosen(state);
+    impact.setValue(law ? key(law) : "");
+    impact.querySelector(".hint").replaceChildren(...symbol(`${law ? t(law.help) : IMPACT_HELP} ${FORCES}`));
+    restitution.hidden = !law?.restitution;
     restitution.setValue(state.restitution ?? RESTITUTION);
     const on = state.bouc_wen !== undefined;
     tick.checked = on;
