@@ -62,6 +62,23 @@ def test_fragility_with_bands_overturning_and_observed_fractions(cloud):
         assert mine["sa_t1"].iloc[groups[1][0]] < inside < mine["sa_t1"].iloc[groups[1][-1]]
 
 
+def test_structures_can_share_a_panel(cloud):
+    figure = drawn(rf.plot_fragility(cloud, together=[("#5", "#1"), ["a$b"]]))
+    both, alone = figure.axes
+    assert both.get_title() == "#5, #1"
+    apart = drawn(rf.plot_fragility(cloud)).axes
+    for model in MODELS:
+        thick, thin = lines(both, model)
+        assert thick.get_linewidth() > thin.get_linewidth()
+        np.testing.assert_array_equal(thick.get_ydata(), lines(apart[1], model)[0].get_ydata())
+        np.testing.assert_array_equal(thin.get_ydata(), lines(apart[0], model)[0].get_ydata())
+        assert len(lines(alone, model)) == 1
+    assert {"#1", "#5"} <= set(notes(both))
+    for wrong in ([("#1", "#5")], [("#1", "#5"), ("#1", "a$b")]):
+        with pytest.raises(rf.InputError, match="together must have each structure once"):
+            rf.plot_fragility(cloud, together=wrong)
+
+
 def test_fragility_of_fits_alone_with_another_threshold(cloud):
     fits = fit_clouds(cloud, "pga", threshold=2.5e-3)
     figure = drawn(rf.plot_fragility(fits, overturning=True))
@@ -119,6 +136,20 @@ def test_clouds_hold_the_runs_that_rocked_and_stand(cloud, quantity):
         # the highest point stays below the lowest row of crosses
         lowest = axes.transAxes.transform((0.0, crosses[-1].get_ydata().min(initial=1.0)))[1]
         assert axes.transData.transform((1.0, shown.max()))[1] < lowest
+
+
+def test_a_plain_cloud_ends_at_its_points(cloud):
+    kept = cloud[(cloud["status"] == "rocking") & (cloud["max_rotation"] > 1e-4)]
+    full, plain = (drawn(rf.plot_clouds(cloud, plain=each)) for each in (False, True))
+    low, high = np.log(plain.axes[0].get_ylim())
+    least, most = np.log(kept["max_rotation"].agg(["min", "max"]))
+    assert low < least < most < high
+    assert (most - least) / (high - low) > 0.85
+    assert np.ptp(np.log(full.axes[0].get_ylim())) > 1.3 * (high - low)
+    assert "overturned" not in legend(plain)
+    for axes, model in ((axes, model) for axes in plain.axes for model in MODELS):
+        assert not lines(axes, "_overturned")[MODELS.index(model)].get_xdata().size
+    assert not any("σ" in text for axes in plain.axes for text in notes(axes))
 
 
 def test_a_cloud_without_a_fit_is_points_and_says_so(cloud):

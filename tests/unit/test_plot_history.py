@@ -245,6 +245,36 @@ def test_panels_are_chosen_and_lettered_from_the_top(four):
     assert alone.get_ylabel() == "$V_b$ [kN]"
 
 
+def test_a_detail_is_a_second_column_of_panels(four):
+    figure = plot_history(four, panels=("rotation", "top_displacement"), detail=(2.0, 5.5))
+    assert [notes(axes)[0] for axes in figure.axes] == ["A", "B", "C", "D"]
+    whole = (0.0, max(float(response.time[-1]) for response in four))
+    assert [axes.get_xlim() for axes in figure.axes] == [whole, (2.0, 5.5)] * 2
+    quantities = [axes.get_ylabel()[:1] for axes in figure.axes]
+    assert quantities == ["θ", "θ", "$", "$"]
+    assert [axes.get_xlabel() for axes in figure.axes] == ["", "", "time [s]", "time [s]"]
+    for axes in figure.axes[:2]:
+        np.testing.assert_array_equal(curve(axes, 2).get_ydata(), four[2].rotation)
+    narrow = plot_history(four, panels=["rotation"], detail=(2.0, 5.5), size="column")
+    assert [axes.get_xlim() for axes in narrow.axes] == [whole, (2.0, 5.5)]
+
+
+@pytest.mark.parametrize("detail", [(2.0,), (5.0, 2.0), (-1.0, 2.0), (0.0, 1e3)])
+def test_a_detail_lies_within_the_responses(four, detail):
+    with pytest.raises(rf.InputError, match=re.escape(f"but {detail!r} was given")):
+        plot_history(four, detail=detail)
+
+
+def test_lines_are_the_caller_s(four):
+    given = [("gray", "-"), ("blue", "--"), ("#123456", ":"), ("black", "-.")]
+    figure = plot_history(four, panels=["rotation"], lines=given)
+    looks = [(to_hex(curve(figure.axes[0], i).get_color()), curve(figure.axes[0], i).get_linestyle()) for i in range(4)]
+    assert looks == [("#8c8c8c", "-"), ("#0072b2", "--"), ("#123456", ":"), ("#000000", "-.")]
+    for wrong in (given[:3], [*given[:3], ("no colour", "-")], [*given[:3], ("black", "dashes")]):
+        with pytest.raises(rf.InputError, match=r"lines must be 4 pairs of a colour and one of -, --, -\., :"):
+            plot_history(four, lines=wrong)
+
+
 def test_what_the_ground_must_hold_is_a_panel_of_its_own(four):
     (axes,) = plot_history(four[2], panels=["horizontal_reaction"]).axes
     assert axes.get_ylabel() == "$ΣF_x$ [kN]"

@@ -34,6 +34,8 @@ NUMBERS = (
     compare.statement("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
     compare.statistic("difference", "Section 3.2", "0.002", ResampledInterval(0.00093, 0.00064, 0.00329), "rad"),
     compare.count("pairs that rock", "Section 3.3", "693", ResampledInterval(882.0, 867.0, 900.0)),
+    compare.assumed(compare.number("u_top", "Section 4.2", "≈ 0.05", 0.0784, "m"), "D_y = 0.035 m"),
+    compare.judgement("ω*_1/ω_1 less 1", "Section 3.4", "about 1", 0.33, "< 0.1"),
 )
 CHECKS = (
     compare.check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"),
@@ -102,7 +104,7 @@ def test_every_number_and_verdict_is_in_the_page(folder, document):
             assert str(text) in page.cells
     assert document.counts == {
         "reproduced": 1, "compatible": 1, "equivalent specimen": 1, "cannot tell": 1, "cannot be compared": 1,
-        "does not reproduce": 1,
+        "parameter not given": 1, "authors' judgement": 1, "does not reproduce": 1,
     }  # fmt: skip
     assert page.cells.count("a|b & c_*") == 2  # among those that do not reproduce, and in its section
 

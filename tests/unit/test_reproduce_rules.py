@@ -1,6 +1,7 @@
 """The rules by which a printed number reproduces, and what remarks rest on."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -19,7 +20,12 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER
 from rockflex.papers.silva_stojadinovic_2024._section_3_2 import friction_intervals
-from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency_by_elements, ritz_modes_with_slices
+from rockflex.papers.silva_stojadinovic_2024._section_4 import (
+    RITZ,
+    first_frequency_by_elements,
+    mixed_element_modes,
+    ritz_modes_with_slices,
+)
 
 
 @pytest.mark.parametrize(
@@ -122,6 +128,74 @@ def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdi
     line = compare.number("ratio", "Section 4.2", printed, ours)
     assert line.verdict is verdict
     assert ("20 %" in line.criterion) == (printed != "2")
+
+
+@pytest.mark.parametrize(
+    ("ours", "agreed", "verdict"),
+    [
+        (0.09, Verdict.REPRODUCED, Verdict.REPRODUCED),
+        (0.09, Verdict.EQUIVALENT, Verdict.EQUIVALENT),
+        (0.33, Verdict.REPRODUCED, Verdict.JUDGEMENT),
+        (0.33, Verdict.EQUIVALENT, Verdict.JUDGEMENT),
+    ],
+)
+def test_words_of_degree_that_miss_our_reading_are_the_authors_judgement(ours, agreed, verdict):
+    line = compare.judgement("rise", "Section 3.4", "about 1", ours, "< 0.1", "%", agreed=agreed, note="at 1")
+    assert line.verdict is verdict
+    assert (line.criterion, line.note) == ("< 0.1", "0.1 % is our reading; at 1")
+
+
+@pytest.mark.parametrize("ours", [0.05, 0.0784])
+def test_what_an_assumed_parameter_decides_is_not_judged(ours):
+    line = compare.assumed(compare.number("u_top", "Section 4.2", "≈ 0.05", ours, "m"), "D_y = 0.035 m")
+    assert (line.verdict, line.note) == (Verdict.NOT_GIVEN, "D_y = 0.035 m is assumed")
+    assert line.difference == pytest.approx(ours - 0.05)
+
+
+@pytest.mark.parametrize(
+    ("values", "verdict"),
+    [
+        ([-34.0, -10.0, 8.0], Verdict.UNDECIDED),
+        ([-24.0, -21.0, -18.0], Verdict.COMPATIBLE),
+        ([-18.0, -10.0, 8.0], Verdict.NOT),
+    ],
+)
+def test_a_sweep_of_unpublished_values_is_an_interval(values, verdict):
+    line = compare.swept("change", "Section 3.1", "about −21", -10.0, np.array(values), "%")
+    assert line.verdict is verdict
+    assert line.criterion.startswith("3 combinations of unpublished values, ")
+    assert line.difference == 11.0
+
+
+@pytest.mark.parametrize(
+    ("interval", "weaker", "verdict"),
+    [
+        ((0.954, 0.980), (0.983, 0.991), Verdict.UNDECIDED),
+        ((0.954, 0.980), (0.994, 0.999), Verdict.UNDECIDED),
+        ((0.954, 0.980), (0.960, 0.983), Verdict.NOT),
+        ((0.980, 0.987), (0.960, 0.983), Verdict.COMPATIBLE),
+        ((0.954, 0.980), None, Verdict.NOT),
+    ],
+)
+def test_the_strength_of_the_records_decides_where_weaker_ones_do_not_miss(interval, weaker, verdict):
+    """Weaker records take a miss back, and never make a value agree."""
+    ours = ResampledInterval(0.97, *interval)
+    other = None if weaker is None else ResampledInterval(0.987, *weaker)
+    line = compare.statistic("R²", "Section 3.3", "0.99", ours, weaker=other)
+    bound = compare.tendency("R²", "Section 3.3", "high", ours, "> 0.985", weaker=other)
+    assert line.verdict is verdict
+    assert ("records times 0.6 decide" in line.criterion) == (verdict is Verdict.UNDECIDED)
+    expected = {Verdict.COMPATIBLE: Verdict.UNDECIDED}  # only a part of the interval is above the bound
+    assert bound.verdict is expected.get(verdict, verdict)
+
+
+def test_a_reading_that_records_do_not_meet_is_the_authors_judgement():
+    ours = ResampledInterval(0.4, 0.3, 0.5)
+    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", missed=Verdict.JUDGEMENT, weaker=ours)
+    assert line.verdict is Verdict.JUDGEMENT
+    near = ResampledInterval(0.1, 0.05, 0.5)
+    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", missed=Verdict.JUDGEMENT, weaker=near)
+    assert line.verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize(("printed", "low", "high"), [("306", 94.0, 124.0), ("306", 290.0, 320.0), ("2", 0.0, 5.0)])
@@ -260,6 +334,30 @@ def test_thin_slices_meet_every_entry_of_table_3():
     for name, values in (("ω", exact.omega), ("m*", exact.effective_mass / 1e6), ("h*", exact.effective_height)):
         assert fine[name] == pytest.approx(values, rel=2e-4)
     assert fine["Γ"] == pytest.approx(exact.top_ordinate, rel=2e-4)
+
+
+def test_modes_mixed_a_little_meet_what_is_printed_of_the_finite_elements():
+    printed = {"m*": (8.485, 3.233), "h*": (141.66, 50.02), "Γ": (1.725, -1.179)}
+    digits = {"m*": 3, "h*": 2, "Γ": 3}
+
+    def met(*parts):
+        found = mixed_element_modes(*parts)
+        return [
+            round(float(found[name][n]), digits[name]) == row[n] for name, row in printed.items() for n in range(2)
+        ]  # fmt: skip
+
+    assert all(met(0.009, -0.0002))
+    assert met(0.0, 0.0).count(True) == 1  # Γ_1
+    assert not all(met(0.009, 0.0002))
+    assert not all(met(-0.009, -0.0002))
+
+
+def test_modes_of_the_elements_converge_to_those_of_the_library():
+    exact = replace(TOWER, method="fe").rocking()
+    found = mixed_element_modes(0.0, 0.0, 4000)
+    assert found["m*"] == pytest.approx(exact.effective_mass[:2] / 1e6, rel=3e-4)
+    assert found["h*"] == pytest.approx(exact.effective_height[:2], rel=3e-4)
+    assert found["Γ"] == pytest.approx(exact.top_ordinate[:2], rel=1e-3)
 
 
 def test_plain_finite_elements_converge_before_rounding_grows():

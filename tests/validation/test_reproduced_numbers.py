@@ -21,6 +21,7 @@ from rockflex.papers.silva_stojadinovic_2024._section_3_2 import (
     cases_of_differences,
     differences_between_models,
     run_cloud_of_paper,
+    run_weaker_cloud,
 )
 from rockflex.papers.silva_stojadinovic_2024._section_3_3 import (
     COUNTS,
@@ -36,25 +37,30 @@ PAIRS = 60  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
 MISSES = {
     "figure-3": {"friction that 2DOF-C needs, Eq. 22 as printed"},
-    "figure-4": {"u_top,max of MDOF-S over 2DOF-S, less 1"},
-    "figure-10": {
-        "shear: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
-        "flexure: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
-        "shear: ω*_n/ω_n of 2DOF-S over the pinned beam's, largest, h*_1/B = 1000",
-        "shear: ω*_n/ω_n of 3DOF-S over the pinned beam's, largest, h*_1/B = 1000",
-        "shear: error of ω*_1 of 2DOF-S, h*_1/B = 5",
-        "flexure: ω*_n/ω_n of 2DOF-S over the pinned beam's, largest, h*_1/B = 1000",
-        "flexure: ω*_n/ω_n of 3DOF-S over the pinned beam's, largest, h*_1/B = 1000",
-        "flexure: ω*_n/ω_n of MDOF-S over the pinned beam's, largest, h*_1/B = 1000",
-    },
+    "figure-10": {"ω*_n/ω_n over the pinned beam's, largest of all models, h*_1/B = 1000"},
     "table-3": {
         "h*_2",
         *(f"{name}, finite elements" for name in ("m*_1", "h*_1", "ω_1", "m*_2", "h*_2", "Γ_2")),
     },
     "figure-15": {"θ_max, error of 3DOF-S"},
-    "figure-16": {"u_top,max of the weak structure"},
-    "figure-17": {"u_top,max, fixed over rocking", "u_top,max of Fig. 16's weak structure over Fig. 17's"},
+    "figure-17": {"u_top,max, fixed over rocking"},
 }
+JUDGED = {  # words without a number, which miss our reading of them
+    "figure-10": {
+        "shear: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
+        "flexure: ω*_1/ω_1 less 1, largest of all models, h*_1/B = 1 and 2",
+        "shear: error of ω*_1 of 2DOF-S, h*_1/B = 5",
+    },
+}
+ASSUMED = {  # of the yield displacement of Fig. 16
+    "figure-16": {
+        "largest |z| of the weak structure",
+        "θ_max of the weak structure over the elastic one",
+        "u_top,max of the weak structure",
+    },
+    "figure-17": {"u_top,max of Fig. 16's weak structure over Fig. 17's"},
+}
+SWEPT = "u_top,max of MDOF-S over 2DOF-S, less 1"  # of Fig. 4, over values that are not published
 BY_RECORDS = {"figure-5", "figure-6", "figure-7", "figure-9", "figure-13", "sliding"}
 COUNTED = {name for name, _ in COUNTS.values()}
 OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 3}  # checks of ourselves
@@ -90,14 +96,26 @@ def holds(criterion, ours):
 
 def interval_of(line):
     """Ends of the interval of a line, as they are shown, and a unit of their last digit."""
-    found = re.search(r"90 % interval (\S+) to (\S+)", line.criterion)
+    found = re.search(r"90 % interval (\S+) to ([^\s;]+)", line.criterion)
     low, high = (Decimal(text.replace("−", "-")) for text in found.groups())
     return low, high, Decimal(1).scaleb(max(low.as_tuple().exponent, high.as_tuple().exponent))
 
 
 def by_interval(line):
     """Judge a line of other records or draws anew, from its texts alone; None where their last digit decides."""
-    low, high, room = interval_of(line)
+    found = judged_by(line, *interval_of(line))
+    weaker = re.search(r"; records times 0\.6 decide: (\S+) to (\S+)", line.criterion)
+    if weaker is None or found is None:
+        return found
+    low, high = (Decimal(text.replace("−", "-")) for text in weaker.groups())
+    again = judged_by(line, low, high, Decimal(1).scaleb(max(low.as_tuple().exponent, high.as_tuple().exponent)))
+    assert found is Verdict.NOT
+    assert again is not Verdict.NOT
+    return Verdict.UNDECIDED
+
+
+def judged_by(line, low, high, room):
+    """Judge a line by an interval, in which `room` is a unit of the last digit."""
     if line.criterion[0] in "<>≤≥":
         criterion = line.criterion.split(" over ")[0]
         ends = [{holds(criterion, end + shift) for shift in (-room, room)} for end in (low, high)]
@@ -141,28 +159,58 @@ def test_every_line_that_passes_agrees_with_what_is_printed(results):
     for name, line in found:
         if line.name in COUNTED:
             assert line.verdict is Verdict.INCOMPARABLE, line
+        elif line.name in ASSUMED.get(name, set()):
+            assert line.verdict is Verdict.NOT_GIVEN, line
+        elif line.name == SWEPT:
+            assert line.verdict is Verdict.UNDECIDED, line
         elif name in BY_RECORDS:
             again = by_interval(line)
             assert again in (None, line.verdict), (name, line)
         else:
-            assert agrees(line) == (line.verdict is not Verdict.NOT), (name, line)
+            missed = line.verdict in (Verdict.NOT, Verdict.JUDGEMENT)
+            assert agrees(line) == (not missed), (name, line)
 
 
-def test_what_does_not_reproduce_is_known(results):
+@pytest.mark.parametrize(
+    ("verdict", "known"), [(Verdict.NOT, MISSES), (Verdict.JUDGEMENT, JUDGED), (Verdict.NOT_GIVEN, ASSUMED)]
+)
+def test_what_does_not_reproduce_is_known(results, verdict, known):
     for name, result in results.items():
         if name not in BY_RECORDS:
-            assert {line.name for line in result.numbers if line.verdict is Verdict.NOT} == MISSES.get(name, set()), (
-                name
-            )
+            assert {line.name for line in result.numbers if line.verdict is verdict} == known.get(name, set()), name
+
+
+def test_only_words_whose_limit_is_our_reading_are_the_authors_judgement(results):
+    judged = [line for _, line in lines(results) if line.verdict is Verdict.JUDGEMENT]
+    assert judged
+    for line in judged:
+        assert "is our reading" in line.note
+        assert not any(sign.isdigit() and sign != "1" for sign in line.printed.replace("below 5", "")), line.printed
+
+
+def test_the_bound_of_the_pinned_beam_is_one_claim(results):
+    (line,) = (line for _, line in lines(results) if "pinned beam bounds" in line.printed)
+    assert line.verdict is Verdict.NOT
+    each = re.findall(r"(?:shear|flexure), (?:[23]D|MD)OF-S: (\d\.\d+)", line.note)
+    assert len(each) == 6
+    assert max(map(float, each)) == pytest.approx(line.ours, abs=1e-3)
+
+
+def test_fig_4_cannot_be_told_because_its_sweep_holds_the_printed_value(results):
+    (line,) = (line for line in results["figure-4"].numbers if line.name == SWEPT)
+    count, low, high = re.match(r"(\d+) combinations of unpublished values, (\S+) to (\S+),", line.criterion).groups()
+    assert int(count) == 243
+    assert float(low.replace("−", "-")) < -21.5 < -20.5 < float(high)
 
 
 def test_verdicts_fit_their_ground(results):
     grounds = {name: {Verdict.COMPATIBLE, Verdict.UNDECIDED} for name in BY_RECORDS}
     grounds |= {name: {Verdict.EQUIVALENT} for name in ("figure-3", "figure-4")}
     for name, line in lines(results):
-        if line.name in COUNTED:
+        if line.name in COUNTED or line.name == SWEPT:
             continue
-        assert line.verdict in grounds.get(name, {Verdict.REPRODUCED}) | {Verdict.NOT}, (name, line.name)
+        missed = {Verdict.NOT, Verdict.JUDGEMENT, Verdict.NOT_GIVEN}
+        assert line.verdict in grounds.get(name, {Verdict.REPRODUCED}) | missed, (name, line.name)
 
 
 def test_checks_of_ourselves_hold_and_are_no_numbers(results):
@@ -216,6 +264,7 @@ def test_known_values(results):
 def test_differences_of_the_clouds_by_hand(records, quantity):
     runs = run_cloud_of_paper(records)
     assert len(runs) == 6 * 3 * 2 * 72
+    assert sorted(run_weaker_cloud(records)["scale"].unique()) == [0.6, 1.2]
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > 1e-4)]
     medians = {}
     for key, group in kept.groupby(["structure", "model"], observed=True):
@@ -250,7 +299,7 @@ def test_draws_of_a_population_spread_as_populations_do(records):
     share, found = resting.mean(), population_intervals(records)["no uplift"]
     # A tenth drawn from ten populations without replacement: hypergeometric, its 5 and 95 % quantiles.
     spread = 1.645 * np.sqrt(PAIRS * share * (1 - share) * 0.9)
-    assert found.estimate == pytest.approx(PAIRS * share, abs=1.0)  # a whole number
+    assert found.estimate == resting[0].sum()  # of the pairs that the figures show
     assert (found.high - found.low) / 2 == pytest.approx(spread, rel=0.2)
     assert found.low <= np.median(resting.sum(axis=1)) <= found.high
 

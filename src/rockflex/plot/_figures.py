@@ -129,6 +129,23 @@ ALTERNATIVE_STYLES = tuple(
 """Line styles of alternatives, which colours and dashes tell apart."""
 
 
+Lines = Sequence[tuple[str, str]]
+"""Colour and line style of each curve as matplotlib writes them, such as ``("black", "-")``."""
+_NAMED = {"black": BLACK, "gray": GRAY, "green": GREEN, "red": RED, "blue": BLUE, "orange": ORANGE}
+_LINES = ("-", "--", "-.", ":")
+
+
+def given_line_styles(lines: Lines, count: int) -> list[LineStyle]:
+    """Return the line styles that a caller gives; plain names are colours that colour-blind readers can tell apart."""
+    given = list(lines)
+    if len(given) != count or not all(is_color_like(color) and style in _LINES for color, style in given):
+        raise InputError(
+            f"lines must be {count} pairs of a colour and one of {', '.join(_LINES)}, one per response, such as "
+            f'("black", "-"), but {shown(lines)} was given.'
+        )
+    return [LineStyle(_NAMED.get(color, color), style) for color, style in given]
+
+
 Size = Literal["column", "page"] | tuple[float, float]
 """Size of a figure: the width of a journal's column or page, or width and height in inches."""
 

@@ -59,11 +59,12 @@ def plot_fragility(
     confidence: float | None = None,
     overturning: bool = False,
     bins: SupportsIndex = 0,
+    together: Sequence[Sequence[str]] | None = None,
     size: Size | None = None,
 ) -> Figure:
     r"""Plot the probability of rocking over an intensity measure, one panel per structure and one curve per model.
 
-    The figure is that of Silva & Stojadinović 2024, Fig. 5: logistic curves of uplift with θ_max > 1e-4 rad. If
+    Two structures a panel are Silva & Stojadinović 2024, Fig. 5: logistic curves of uplift with θ_max > 1e-4 rad. If
     all runs rock, or none, the line is flat. In the shaded range, below the weakest motion, curves are extrapolated.
     For another threshold, pass the result of `fit_clouds`.
 
@@ -81,19 +82,23 @@ def plot_fragility(
     bins
         Number of groups of equally many runs, sorted by intensity, for which the fraction of rocking runs is marked;
         requires the table. Default: none.
+    together
+        Structures that share a panel, such as ``[("#1", "#2"), ("#3", "#4")]``; each curve of the second and further
+        ones is thinner, and all have their names. Default: a panel for each structure.
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One axes per structure, over the measure in its unit.
+        One axes per structure or group of structures, over the measure in its unit.
 
     Raises
     ------
     InputError
         If the table lacks a column or holds no solved run of a structure and model, the fits use several measures or
-        another one, bins are given with fits, or there are too many structures or models; or the size is unknown.
+        another one, bins are given with fits, or there are too many structures or models; if `together` does not have
+        each structure once; or the size is unknown.
 
     Examples
     --------
@@ -108,7 +113,7 @@ def plot_fragility(
     groups = checked_whole_number("bins", bins, 0)
     fits, runs = _fits_of_clouds(clouds, measure, groups)
     styles = tables.model_lines_and_symbols(tables.names_in_column(fit.model for fit in fits))
-    names = tables.names_in_column(fit.structure for fit in fits)
+    shared = _shared_panels(tables.names_in_column(fit.structure for fit in fits), together)
     limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
@@ -118,13 +123,15 @@ def plot_fragility(
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
         event = rf"\mathrm{{{translated('uplift')}}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
         y = translated("probability") if overturning else f"$P({event})$"
-        figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(fits[0].measure), y)
-        for axes, name in zip(panels, names, strict=True):
-            for fit in (fit for fit in fits if fit.structure == name):
+        titles = [", ".join(names) for names in shared]
+        figure, panels = tables.structure_panels(titles, 3, 2.1, tables.measure_axis_name(fits[0].measure), y)
+        for axes, names in zip(panels, shared, strict=True):
+            for fit in (fit for name in names for fit in fits if fit.structure == name):
                 style, marker = styles[fit.model]
                 _draw_fragility_curve(
-                    axes, fit.outcomes.initiation, limit, confidence, style, linewidth=1.2, label=fit.model
-                )
+                    axes, fit.outcomes.initiation, limit, confidence, style,
+                    linewidth=1.2 / (1 + names.index(fit.structure)), label=fit.model,
+                )  # fmt: skip
                 if overturning:
                     fallen = fit.outcomes.overturning
                     _draw_fragility_curve(axes, fallen, limit, confidence, style, linewidth=0.6, label="_overturning")
@@ -134,7 +141,9 @@ def plot_fragility(
                     )
             if lowest is not None:
                 axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
-            failed = sum(fit.n_failed for fit in fits if fit.structure == name)
+            if len(names) > 1:
+                _name_curves(axes, fits, names, limit)
+            failed = sum(fit.n_failed for fit in fits if fit.structure in names)
             if failed:
                 text = translated("{n} failed", n=failed)
                 axes.text(0.97, 0.05, text, transform=axes.transAxes, ha="right", fontsize=SMALL)
@@ -149,6 +158,35 @@ def plot_fragility(
             handles.append(Patch(color=SHADE, linewidth=0.0, label=translated("no runs")))
         figures.add_legend_above(figure, handles)
     return figure
+
+
+def _shared_panels(names: list[str], together: Sequence[Sequence[str]] | None) -> list[list[str]]:
+    """Return the structures of each panel."""
+    if together is None:
+        return [[name] for name in names]
+    shared = [[group] if isinstance(group, str) else list(group) for group in together]
+    given = [name for group in shared for name in group]
+    if sorted(given) != sorted(names):
+        raise InputError(
+            f"together must have each structure once, of {', '.join(names)}, but {shown(together)} was given."
+        )
+    return shared
+
+
+def _name_curves(axes: Axes, fits: list[CloudFits], names: list[str], limit: float) -> None:
+    """Write the name of each structure right of its last curve, at a height of its own, or under a flat one."""
+    at = np.linspace(limit / _POINTS, limit, _POINTS)
+    for place, name in enumerate(names):
+        height = (place + 1.0) / (len(names) + 1.0)
+        curves = [fit.outcomes.initiation.probability(at) for fit in fits if fit.structure == name]
+        chance = min(curves, key=lambda curve: float(np.sum(curve)))
+        reached = int(np.abs(chance - height).argmin())
+        flat = abs(float(chance[reached]) - height) > 0.5 * height
+        point = (0.5 * limit, float(np.interp(0.5 * limit, at, chance))) if flat else (float(at[reached]), height)
+        axes.annotate(
+            name, point, xytext=(0, -4) if flat else (5, 0), textcoords="offset points", fontsize=SMALL,
+            va="top" if flat else "center",
+        )  # fmt: skip
 
 
 def _fits_of_clouds(
@@ -490,6 +528,7 @@ def plot_clouds(
     *,
     threshold: float = ROCKED,
     nominal: bool = False,
+    plain: bool = False,
     size: Size | None = None,
 ) -> Figure:
     r"""Plot the response of runs that rocked without overturning over an intensity measure, one panel per structure.
@@ -513,6 +552,8 @@ def plot_clouds(
         A run counts as rocking if its base uplifted and its rotation in rad is larger.
     nominal
         Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
+    plain
+        Whether to leave out the numbers and the overturned runs, as in the paper, so that the axes end at the points.
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
@@ -543,6 +584,8 @@ def plot_clouds(
 
     tables.check_table_columns(runs, ("structure", "model", "status", measure, quantity), "what run_cloud returned")
     clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
+    if plain:
+        clouds = [cloud._replace(fallen=cloud.fallen[:0]) for cloud in clouds]
     styles = tables.model_lines_and_symbols(tables.names_in_column(cloud.model for cloud in clouds))
     names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
@@ -553,7 +596,8 @@ def plot_clouds(
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
             tables.label_log_axis_plainly(axes.xaxis)
-        _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
+        rows_of_text = 0 if plain else len(styles) + 1
+        _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, rows_of_text)
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
             for cloud in (cloud for cloud in clouds if cloud.structure == name):
@@ -561,7 +605,8 @@ def plot_clouds(
                 crosses = 0.97 - _CROSSES * list(styles).index(cloud.model)
                 _draw_cloud(axes, cloud, quantity, measure, style, marker, crosses)
                 rows.append((_cloud_numbers_text(cloud), style.color))
-            _write_cloud_numbers(axes, rows)
+            if not plain:
+                _write_cloud_numbers(axes, rows)
         handles = tables.model_legend_handles(styles)
         if len(fallen):
             fallen = translated("overturned")
@@ -598,15 +643,15 @@ def _plotted_clouds(
 
 
 def _set_cloud_limits(
-    axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, n_models: int
+    axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, rows: int
 ) -> None:
-    """Leave room for all points, a row of crosses per model above them, and the numbers below."""
+    """Leave room for all points, the rows of numbers below them, and above them a row of crosses per row but one."""
     im = seen[measure].to_numpy(dtype=float)
     values = rocked[quantity].to_numpy(dtype=float)
     values = values[values > 0.0]
     low, high = (values.min(), values.max()) if values.size else (1e-4, 1e-1)
     left, right = (im.min(), im.max()) if im.size else (0.1, 1.0)
-    below, above = 0.06 + _ROW * (n_models + 1), 0.06 + _CROSSES * n_models
+    below, above = 0.06 + _ROW * rows, 0.06 + _CROSSES * max(rows - 1, 0)
     height = max(float(np.log(high / low)), 0.5) / (1.0 - below - above)
     axes.set_ylim(low * np.exp(-below * height), high * np.exp(above * height))
     margin = 1.15 if right > 2.0 * left else 2.0  # of one intensity alone, wide enough for labels

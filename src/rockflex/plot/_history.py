@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from string import ascii_uppercase
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -18,7 +18,7 @@ from rockflex.foundation.number_format import short_number
 from rockflex.foundation.shown import shown
 from rockflex.foundation.units import Unit
 from rockflex.plot import _figures as figures
-from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, Lines, LineStyle, Size
 from rockflex.response._history import History
 from rockflex.response._outputs import HISTORY
 from rockflex.response._response import Response, history_of
@@ -127,9 +127,9 @@ def response_figure_title(curves: list[ResponseCurve], title: str | None) -> str
 
 
 def response_curves(
-    responses: Response | Iterable[Response], labels: Sequence[str] | None = None
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, lines: Lines | None = None
 ) -> list[ResponseCurve]:
-    """Check the responses, and give each a label and a line style."""
+    """Check the responses, and give each a label and a line style, if it has none."""
     everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
     if not everything:
         raise InputError('There is no response to plot. Give at least one from simulate(..., output="history").')
@@ -141,7 +141,8 @@ def response_curves(
                 'Give what simulate returned, or the column "response" of simulate_many(..., output="history").'
             )
         histories.append(history_of(response, place))
-    names, styles = _response_labels(everything, labels), _response_line_styles(histories)
+    names = _response_labels(everything, labels)
+    styles = _response_line_styles(histories) if lines is None else figures.given_line_styles(lines, len(histories))
     return [ResponseCurve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
 
 
@@ -264,12 +265,16 @@ def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) ->
     return unit, _MARGIN * largest / unit.size if largest > 0.0 else 1e-3 / unit.size
 
 
-def draw_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
-    """Fill one panel over time and list the peaks beside it; return a line for each curve."""
+def draw_panel(
+    axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str, *, notes: bool = True
+) -> list[Artist]:
+    """Fill one panel over time and list the peaks beside it, if notes are wanted; return a line for each curve."""
     lines, peaks = draw_curves(axes, quantity, curves)
     figures.label_panel(axes, mark)
-    notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
-    figures.write_notes_beside(axes, [(translated("peaks"), "#404040"), *notes], 10.0)
+    if not notes:
+        return lines
+    texts = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
+    figures.write_notes_beside(axes, [(translated("peaks"), "#404040"), *texts], 10.0)
     return lines
 
 
@@ -355,16 +360,19 @@ def plot_history(
     labels: Sequence[str] | None = None,
     *,
     panels: Sequence[str] | None = None,
+    detail: tuple[float, float] | None = None,
+    lines: Lines | None = None,
     title: str | None = None,
     size: Size | None = None,
 ) -> Figure:
     """Plot rotation θ, displacements of the top, base moment M_b and base shear V_b over time, one panel each.
 
     With ``panels=("rotation", "top_displacement", "base_moment", "base_shear")`` the figure is that of Silva &
-    Stojadinović 2024, Fig. 15; with the first two, that of Figs. 3 and 4. Their u_top is relative to the rotating base;
-    the total displacement is relative to the ground, and comparable with a fixed base. The times during which the base
-    of the most detailed model is uplifted are shaded; if several models rock, bars at the bottom of the first panel
-    show the uplifts of each. Circles mark the true peaks, which are listed with their times beside each panel.
+    Stojadinović 2024, Fig. 15; with the first two, that of Fig. 3, and with a detail of Fig. 4. Their u_top is relative
+    to the rotating base; the total displacement is relative to the ground, and comparable with a fixed base. The times
+    during which the base of the most detailed model is uplifted are shaded; if several models rock, bars at the bottom
+    of the first panel show the uplifts of each. Circles mark the true peaks, which are listed with their times beside
+    each panel.
     Overturning does not extend the axes: a triangle marks where the rotation leaves its panel, and a dotted line when
     |θ| = π/2.
 
@@ -379,6 +387,11 @@ def plot_history(
         ``"base_shear"``, ``"horizontal_reaction"``, ``"slip"`` and ``"edge_uplift"`` (of the left edge, and thinner of
         the right one), from the top. Default: all but the last three; without the total displacement if the height of
         the top is not known, and with the slip if a base can slide and the edges if one is on springs.
+    detail
+        First and last time in s of a second column of panels, which shows this part alone. Default: none.
+    lines
+        Colour and line style of each response, such as ``[("black", "-"), ("red", "--")]``, with the styles ``-``,
+        ``--``, ``-.`` and ``:`` of matplotlib. Default: by model.
     title
         Default: the name of the motion, if there is only one.
     size
@@ -393,8 +406,8 @@ def plot_history(
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, the number of labels differs, or a panel is
-        unknown; or the size is unknown.
+        If there are no responses or too many, one has no history, the number of labels or lines differs, or a panel is
+        unknown; the detail is not within the responses; or the size is unknown.
 
     Examples
     --------
@@ -406,19 +419,40 @@ def plot_history(
     >>> len(figure.axes), figure.axes[1].get_xlabel()
     (2, 'time [s]')
     """
-    curves = response_curves(responses, labels)
+    curves = response_curves(responses, labels, lines)
     quantities = panel_quantities(default_panels(curves) if panels is None else panels)
+    intervals = [time_axis_limits(curves)] if detail is None else _intervals_with_detail(curves, detail)
     handles: list[Artist] = []
     with figures.applied_figure_style(size=size):
-        figure = figures.new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
-        grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
-        for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
-            handles = draw_panel(axes, quantity, curves, mark)
+        height = max(1.45, 0.155 * (len(curves) + 2))
+        # A narrow figure has one column: the panels of the whole, then those of the detail.
+        shape = (len(quantities) * len(intervals), 1) if figures.is_narrow() else (len(quantities), len(intervals))
+        figure = figures.new_figure(6.3 + 1.7 * (shape[1] > 1), shape[0] * height + 0.8)
+        alike: Literal["col", "none"] = "col" if shape[1] == len(intervals) else "none"
+        cells = figure.subplots(*shape, sharex=alike, squeeze=False)
+        grid: list[Axes] = list(cells.reshape(len(quantities), -1, order="F").flat)
+        shown_in = [(quantity, interval) for quantity in quantities for interval in intervals]
+        for axes, (quantity, interval), mark in zip(grid, shown_in, ascii_uppercase, strict=False):
+            handles = draw_panel(axes, quantity, curves, mark, notes=interval == intervals[-1])
         uplifts = shade_uplifts(grid, curves)
-        grid[-1].set(xlabel=translated("time [s]"), xlim=time_axis_limits(curves))
+        for axes, (quantity, interval) in zip(grid, shown_in, strict=True):
+            axes.set_xlim(interval)
+            if quantity == quantities[-1]:
+                axes.set_xlabel(translated("time [s]"))
         figure.align_ylabels()
         add_legend(figure, curves, handles, uplifts, title)
     return figure
+
+
+def _intervals_with_detail(curves: list[ResponseCurve], detail: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the whole time of the responses, and a part of it."""
+    first, last = time_axis_limits(curves)
+    if len(detail) != 2 or not first <= detail[0] < detail[1] <= last:
+        raise InputError(
+            f"detail must be two times in s, in order and within the responses, from {first:g} to {last:g}, but "
+            f"{shown(detail)} was given."
+        )
+    return [(first, last), (float(detail[0]), float(detail[1]))]
 
 
 def shade_uplifts(panels: list[Axes], curves: list[ResponseCurve]) -> dict[str, Artist]:

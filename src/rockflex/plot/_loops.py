@@ -21,7 +21,7 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import short_number, unit_with_prefix
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
-from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Size
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Lines, Size
 from rockflex.plot._history import ResponseCurve
 from rockflex.response._moment_rotation import (
     MomentRotation,
@@ -311,6 +311,7 @@ def plot_yielding(
     responses: Response | Iterable[Response],
     labels: Sequence[str] | None = None,
     *,
+    lines: Lines | None = None,
     title: str | None = None,
     size: Size | None = None,
 ) -> Figure:
@@ -325,6 +326,8 @@ def plot_yielding(
         One response or several, each with its history.
     labels
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
+    lines
+        Colour and line style of each response, as in `plot_history`. Default: by model.
     title
         Default: the name of the motion, if there is only one.
     size
@@ -352,7 +355,7 @@ def plot_yielding(
     >>> len(figure.axes), figure.axes[-1].get_xlabel()
     (3, '$u_{\\mathrm{top}}$ relative [m]')
     """
-    curves = histories.response_curves(responses, labels)
+    curves = histories.response_curves(responses, labels, lines)
     with figures.applied_figure_style(size=size):
         tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), figures.is_narrow()
         figure = figures.new_figure(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
@@ -369,10 +372,10 @@ def plot_yielding(
         top.tick_params(labelbottom=False)
         panels[1].set(xlabel=translated("time [s]"), xlim=(0.0, histories.time_axis_limits(curves)[1]))
         loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
-        lines = _draw_hysteresis(loops, curves)
+        handles = _draw_hysteresis(loops, curves)
         figures.label_panel(loops, "C")
         figure.align_ylabels(panels)
-        histories.add_legend(figure, curves, lines, {}, title)
+        histories.add_legend(figure, curves, handles, {}, title)
     return figure
 
 

@@ -16,12 +16,15 @@ from rockflex.foundation.number_format import short_number
 from rockflex.foundation.shown import shown
 from rockflex.motion._measures import MEASURES
 from rockflex.plot import _figures as figures
-from rockflex.plot._figures import BLACK, GREEN, LINE_STYLES, RED, LineStyle
+from rockflex.plot._figures import BLACK, GREEN, LINE_STYLES, PURPLE, RED, LineStyle
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_OWN = {"2DOF-S": LineStyle(RED, "-."), "3DOF-S": LineStyle(GREEN, "--"), "MDOF-S": LineStyle(BLACK, "-", 2.0)}
+_OWN = {
+    "2DOF-S": LineStyle(RED, "-."), "2DOF-C": LineStyle(PURPLE, "--"), "3DOF-S": LineStyle(GREEN, "--"),
+    "MDOF-S": LineStyle(BLACK, "-", 2.0),
+}  # fmt: skip
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
 _MAX_PANELS = 12  # panels in one figure
@@ -30,10 +33,12 @@ _MAX_PANELS = 12  # panels in one figure
 def model_line_styles(models: Iterable[str]) -> dict[str, LineStyle]:
     """Give each model its own line style, in order of appearance; an `InputError` if there are too many."""
     names = list(dict.fromkeys(models))
+    taken = {style for name, style in _OWN.items() if name in names}
+    spare = [style for style in LINE_STYLES if style not in taken]
     others = [name for name in names if name not in _OWN]
-    if len(others) > len(LINE_STYLES):
+    if len(others) > len(spare):
         raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
-    styles = _OWN | dict(zip(others, LINE_STYLES, strict=False))
+    styles = _OWN | dict(zip(others, spare, strict=False))
     return dict(zip(names, figures.recoloured_line_styles(styles[name] for name in names), strict=True))
 
 

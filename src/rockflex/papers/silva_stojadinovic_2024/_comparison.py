@@ -1,26 +1,15 @@
-"""The rules by which a printed number reproduces.
+"""The rules by which a printed number reproduces: the meanings of `Verdict`, which the report prints.
 
-1. *Reproduced.* A value must round to the printed digits. A word such as "about" does not widen the range: of one
-   digit rounding alone would allow 25 % and more, so such a value must also lie within 20 % of the printed one (our
-   reading of the word). Where a table cuts digits off (Table 3 does so for some), a value that is cut off to the
-   printed digits also passes, and its line says so. A bound must hold. A statement in words becomes a criterion on a
-   number; the line shows both.
-2. *Compatible*, or *cannot tell*. The paper's records and random draws are not available. Values from ours have a 90 %
-   interval. It must overlap what rounds to the printed digits, or meet its criterion throughout. The result is *cannot
-   tell* if the interval is wider than half the printed value, or only a part of it meets the criterion.
-3. *Equivalent specimen.* Rule 1 for a structure that meets the published ratios of a tested specimen but is not the
-   specimen itself.
-4. *Cannot be compared.* A count of outcomes under other records than the paper's, whatever it is.
-5. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
-
-A printed value counts once, even if it is repeated. Anything that follows from the way the library or an equivalent
-specimen is built is a `ConstructionCheck`, not a number; additional computations are `Remark`s.
+The line of a number has its criterion. A statement in words becomes a criterion on a number; the line shows both. A
+value or a claim counts once, even if it is printed twice or is about several models. Anything that follows from the way
+the library or an equivalent specimen is built is a `ConstructionCheck`, not a number; additional computations are
+`Remark`s.
 """
 
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
@@ -33,6 +22,7 @@ from rockflex.report._document import ConstructionCheck, PublishedNumber, decima
 
 MAX_INTERVAL_WIDTH = 0.5  # over the printed value, above which the interval decides nothing
 APPROXIMATE = 0.2  # largest relative difference from a value that is printed as "about" so much
+WEAKER = 0.6  # times all records, for which about as many random pairs uplift as in the paper
 _WORDS = r"(?P<word>about|approximately|≈|≅)\s*"
 _NUMBER = r"[-+−]?\d[\d' ]*(?:\.\d+)?"
 _VALUE = re.compile(rf"(?:{_WORDS})?(?P<value>{_NUMBER})(?:\s*/\s*(?P<divisor>{_NUMBER}))?")
@@ -52,10 +42,7 @@ class _ExplainedName(StrEnum):
 
 
 class Verdict(_ExplainedName):
-    """How our number compares with the printed one; `meaning` is the rule in a sentence.
-
-    The rules are in `_compared_number_of_verdict`.
-    """
+    """How our number compares with the printed one; `meaning` is the rule, best first."""
 
     REPRODUCED = (
         "reproduced",
@@ -76,13 +63,26 @@ class Verdict(_ExplainedName):
     )
     UNDECIDED = (
         "cannot tell",
-        "With other records or draws: the 90 % interval overlaps the printed value but is wider than half of "
-        "it, or the criterion holds over only a part of the interval.",
+        "With other records, draws or unpublished values: the interval overlaps the printed value but is wider than "
+        "half of it, or the criterion holds over only a part of the interval. Or the records decide: it misses with "
+        f"ours, but not with all of them times {WEAKER:g}, with which about as many random pairs uplift as in the "
+        "paper.",
     )
     INCOMPARABLE = (
         "cannot be compared",
         "A count of outcomes: it depends on how strong the records are, and the paper's are not available. Both counts "
         "are shown; neither agreement nor difference would tell anything.",
+    )
+    NOT_GIVEN = (
+        "parameter not given",
+        "Follows from a parameter that the paper chose and does not give. Ours is for a value that we assume, which "
+        "makes it agree or not; so neither is counted.",
+    )
+    JUDGEMENT = (
+        "authors' judgement",
+        'A statement of degree without a number, such as "about 1" or "likely satisfactory", that misses the limit '
+        "which is our reading of it: no number of the paper is contradicted, and its authors may read it otherwise. "
+        "One that meets our limit is reproduced.",
     )
     NOT = "does not reproduce", "None of these. Nothing is adjusted to pass; the difference is shown."
 
@@ -215,7 +215,7 @@ def number(
     truncated: bool = False,
     note: str = "",
 ) -> PublishedNumber:
-    """Compare a printed value or bound with ours (rules 1 and 3).
+    """Compare a printed value or bound with ours.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def number(
     agreed
         Verdict if the value agrees.
     truncated
-        Whether digits may have been cut off in print (rule 1).
+        Whether digits may have been cut off in print.
     """
     wanted, value = printed_range(printed, truncated=truncated), float(ours)
     criterion = "must hold" if wanted.is_bound else MUST_ROUND
@@ -245,40 +245,112 @@ def statement(
     unit: str = "",
     *,
     agreed: Verdict = Verdict.REPRODUCED,
+    missed: Verdict = Verdict.NOT,
     note: str = "",
 ) -> PublishedNumber:
-    """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
+    """Check a statement in words by a bound, such as ``"> 1"``, on a number.
+
+    `agreed` and `missed` are the verdicts if the bound holds, and if it does not.
+    """
     wanted, value = printed_range(criterion), float(ours)
-    verdict = agreed if value in wanted else Verdict.NOT
+    verdict = agreed if value in wanted else missed
     return PublishedNumber(
         name, place, printed, value, unit, criterion, _digits_beside_bound(wanted, value), note, verdict, None, None
     )
 
 
-def statistic(
-    name: str, place: str, printed: str, ours: ResampledInterval, unit: str = "", *, note: str = ""
+def judgement(
+    name: str,
+    place: str,
+    printed: str,
+    ours: float,
+    criterion: str,
+    unit: str = "",
+    *,
+    agreed: Verdict = Verdict.REPRODUCED,
+    note: str = "",
 ) -> PublishedNumber:
-    """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
+    """Check a statement of degree by a bound that is our reading of it, as the line says."""
+    reading = f"{criterion.lstrip('<>≤≥ ')}{f' {unit}' if unit else ''} is our reading"
+    return statement(
+        name, place, printed, ours, criterion, unit, agreed=agreed, missed=Verdict.JUDGEMENT,
+        note="; ".join(part for part in (reading, note) if part),
+    )  # fmt: skip
+
+
+def assumed(line: PublishedNumber, parameter: str) -> PublishedNumber:
+    """Return a line that follows from an assumed parameter, which its note names."""
+    note = "; ".join(part for part in (f"{parameter} is assumed", line.note) if part)
+    return replace(line, verdict=Verdict.NOT_GIVEN, note=note)
+
+
+def statistic(
+    name: str,
+    place: str,
+    printed: str,
+    ours: ResampledInterval,
+    unit: str = "",
+    *,
+    weaker: ResampledInterval | None = None,
+    note: str = "",
+) -> PublishedNumber:
+    """Compare a printed value with the interval of ours, from other records or draws, and weaker ones."""
     wanted = printed_range(printed)
-    digits = _digits_beyond_print(wanted, ours.estimate)
-    known = math.isfinite(ours.low) and math.isfinite(ours.high)
-    wide = ours.high - ours.low > MAX_INTERVAL_WIDTH * abs(wanted.value)
-    interval = f"90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
-    if not known:
-        verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"
-    elif not wanted.meets(ours.low, ours.high):
-        verdict, criterion = Verdict.NOT, f"{interval} must meet it"
-    elif wide:
-        verdict, criterion = Verdict.UNDECIDED, f"{interval} meets it, and is wider than half of it"
-    else:
-        verdict, criterion = Verdict.COMPATIBLE, f"{interval} must meet it"
+    verdict, ends = _interval_verdict(wanted, ours), _ends_in_words(wanted, ours)
+    criterion = {
+        Verdict.COMPATIBLE: f"{ends} must meet it",
+        Verdict.UNDECIDED: f"{ends} meets it, and is wider than half of it",
+        Verdict.NOT: f"{ends} must meet it",
+    }[verdict]
+    if not _is_known(ours):
+        criterion = "too few runs for an interval"
+    if verdict is Verdict.NOT and weaker is not None and _interval_verdict(wanted, weaker) is not Verdict.NOT:
+        verdict, criterion = Verdict.UNDECIDED, f"{criterion}; {_weaker_in_words(wanted, weaker)}"
     return _compared_number_of_verdict(
         name, place, printed, float(ours.estimate), unit, criterion, verdict, wanted, note
     )
 
 
+def swept(
+    name: str, place: str, printed: str, ours: float, values: Array, unit: str = "", *, note: str = ""
+) -> PublishedNumber:
+    """Compare a printed value with the interval of ours over all combinations of unpublished values."""
+    wanted = printed_range(printed)
+    interval = ResampledInterval(float(ours), float(values.min()), float(values.max()))
+    verdict = _interval_verdict(wanted, interval)
+    low, high = (decimal_text(end, _digits_beyond_print(wanted, end)) for end in interval[1:])
+    criterion = f"{values.size} combinations of unpublished values, {low} to {high}, must meet it"
+    if verdict is Verdict.UNDECIDED:
+        criterion = criterion.replace("must meet it", "meet it, and are wider apart than half of it")
+    return _compared_number_of_verdict(name, place, printed, float(ours), unit, criterion, verdict, wanted, note)
+
+
+def _is_known(interval: ResampledInterval) -> bool:
+    return math.isfinite(interval.low) and math.isfinite(interval.high)
+
+
+def _interval_verdict(wanted: PrintedRange, interval: ResampledInterval) -> Verdict:
+    if not _is_known(interval):
+        return Verdict.UNDECIDED
+    if not wanted.meets(interval.low, interval.high):
+        return Verdict.NOT
+    wide = interval.high - interval.low > MAX_INTERVAL_WIDTH * abs(wanted.value)
+    return Verdict.UNDECIDED if wide else Verdict.COMPATIBLE
+
+
+def _ends_in_words(wanted: PrintedRange, interval: ResampledInterval) -> str:
+    digits = _digits_beyond_print(wanted, interval.estimate)
+    return f"90 % interval {decimal_text(interval.low, digits)} to {decimal_text(interval.high, digits)}"
+
+
+def _weaker_in_words(wanted: PrintedRange, weaker: ResampledInterval) -> str:
+    digits = _digits_beside_bound(wanted, float(weaker.estimate))
+    low, high = (decimal_text(end, digits) for end in weaker[1:])
+    return f"records times {WEAKER:g} decide: {low} to {high}"
+
+
 def count(name: str, place: str, printed: str, ours: ResampledInterval) -> PublishedNumber:
-    """Show a count of outcomes, which depends on how strong the records are, next to the printed one (rule 4)."""
+    """Show a count of outcomes, which depends on how strong the records are, next to the printed one."""
     criterion = f"none; 90 % interval {decimal_text(ours.low, 0)} to {decimal_text(ours.high, 0)}"
     wanted, note = printed_range(printed), "depends on how strong the records are"
     return _compared_number_of_verdict(
@@ -287,17 +359,36 @@ def count(name: str, place: str, printed: str, ours: ResampledInterval) -> Publi
 
 
 def tendency(
-    name: str, place: str, printed: str, ours: ResampledInterval, criterion: str, unit: str = "", *, note: str = ""
+    name: str,
+    place: str,
+    printed: str,
+    ours: ResampledInterval,
+    criterion: str,
+    unit: str = "",
+    *,
+    missed: Verdict = Verdict.NOT,
+    weaker: ResampledInterval | None = None,
+    note: str = "",
 ) -> PublishedNumber:
-    """Check a bound or a statement in words on the interval of a number from other records or draws (rule 2)."""
+    """Check a bound or a statement in words on the interval of a number from other records, and from weaker ones.
+
+    `missed` is the verdict if the bound holds nowhere on either interval.
+    """
     wanted, value = printed_range(criterion), float(ours.estimate)
-    digits = _digits_beside_bound(wanted, value)
-    holds = [float(end) in wanted for end in (ours.low, ours.high)]
-    verdict = Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
-    if math.isnan(ours.low) or math.isnan(ours.high):
-        verdict = Verdict.UNDECIDED
+    digits, verdict = _digits_beside_bound(wanted, value), _verdict_over(wanted, ours)
     text = f"{criterion} over the 90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
+    if verdict is Verdict.NOT and weaker is not None and _verdict_over(wanted, weaker) is not Verdict.NOT:
+        verdict, text = Verdict.UNDECIDED, f"{text}; {_weaker_in_words(wanted, weaker)}"
+    verdict = missed if verdict is Verdict.NOT else verdict
     return PublishedNumber(name, place, printed, value, unit, text, digits, note, verdict, None, None)
+
+
+def _verdict_over(wanted: PrintedRange, interval: ResampledInterval) -> Verdict:
+    """Return whether a bound holds over an interval: throughout, in part, or nowhere."""
+    if math.isnan(interval.low) or math.isnan(interval.high):
+        return Verdict.UNDECIDED
+    holds = [float(end) in wanted for end in (interval.low, interval.high)]
+    return Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
 
 
 def check(

@@ -32,7 +32,7 @@ _TARGETS = {
     "figure-10": _Target(_section_3_4.FIGURE_10, _section_3_4.figure_10, 0.7, 0.1),
     "figure-11": _Target(_section_3_4.FIGURE_11, _section_3_4.figure_11, 0.4, 0.1),
     "figure-12": _Target(_section_3_4.FIGURE_12, _section_3_4.figure_12, 0.3, 0.1),
-    "figure-13": _Target(_section_3_3.FIGURE_13, _section_3_3.figure_13, 1.0, 0.1, _section_3_3.population_pieces),
+    "figure-13": _Target(_section_3_3.FIGURE_13, _section_3_3.figure_13, 1.0, 0.1, _section_3_3.sampled_pieces),
     "table-2": _Target(_section_3_4.TABLE_2, _section_3_4.table_2, 0.1, 0.1),
     "figure-14": _Target(_section_4.FIGURE_14, _section_4.figure_14, 0.3, 0.1),
     "table-3": _Target(_section_4.TABLE_3, _section_4.table_3, 14.0, 0.1),
