@@ -482,6 +482,10 @@ def stacked_array(name: str, values: Any, shape: tuple[int, ...], count: int, *,
     """Return a copy as `array` does, with a first axis for the systems of a stack, for all of which it may be given."""
     if type(values) is float and not shape and isfinite(values):
         return np.array([values] * count)
+    if type(values) is np.ndarray and values.dtype == float and values.shape == (count, *shape):
+        copied = values.copy()
+        if not finite or np.isfinite(copied).all():
+            return copied
     if np.ndim(values) == len(shape) + 1:
         return array(name, values, (count, *shape), finite=finite)
     found = array(name, values, shape, finite=finite)[None]
