@@ -77,6 +77,37 @@ def test_rule_and_limits_change_without_another_run(client, state, done, same) -
     )
 
 
+def test_alternatives_are_compared_under_the_set(client, state, done) -> None:
+    """All are the library's, and what ran once is not run again."""
+    wide = {"name": "Wide", "frame": STRUCTURE["frame"] | {"aspect_ratio": 6.0}}
+    kept = [{"name": "wide", "structure": wide, "models": ["fixed", "MDOF-S"]}]
+    state = state | {"alternatives": kept, "limits": {"drift_ratio": 0.01}}
+    token, answer = client.study("record_set", state)
+    assert (answer["status"], answer["total"]) == ("done", 21)
+    found = answer["compared"]
+    assert [each["name"] for each in found["columns"]] == ["wide", "A", "fixed"]
+    chosen = rf.load_suite("fema-p695-far-field").select(TARGET, 7, (0.2, 2.0), scale_limits=(0.25, 4.0))
+    for place, (aspect, model) in enumerate([(6.0, "MDOF-S"), (8.0, "MDOF-S"), (8.0, "fixed")]):
+        own = rf.simulate_set(make_frame(aspect_ratio=aspect), chosen, model, rule="ec8", free_vibration=5.0)
+        for demand in found["demands"]:
+            known = own.statistics["design"].to_dict().get(demand["name"])
+            assert demand["values"][place] == known
+        table = rf.check(own, rf.CheckLimits(drift_ratio=0.01))
+        shown = found["columns"][place]
+        assert [each["ratio"] for each in shown["checks"]] == [row.ratio for row in table.rows]
+        lifted = sum(run.status == "rocking" for run in own.responses)
+        assert shown["lifted"] == (0 if model == "fixed" else lifted)
+    report = client.download(f"/api/study/record_set/{token}/comparison", state)[1].decode()
+    base = next(each for each in found["demands"] if each["name"] == "max_base_moment")["values"]
+    assert all(f'data-of="max_base_moment" data-value="{value!r}"' in report for value in base)
+    assert "story drift" in report
+    begun = time.monotonic()
+    client.study("record_set", state | {"alternatives": [*kept, {**kept[0], "name": "again"}]})
+    assert time.monotonic() - begun < 3.0  # nothing is run a second time
+    refused = client.made(f"/api/study/record_set/{done[0]}/comparison", state)
+    assert "Keep the present structure" in refused["errors"]["alternatives"]
+
+
 def test_demands_checks_and_the_report_are_in_the_units_of_the_page(client, state, done) -> None:
     path, state = f"/api/study/record_set/{done[0]}", state | {"units": "kip-in"}
     answer = client.ask(path, state)
