@@ -155,6 +155,14 @@ def test_a_set_is_cancelled_and_has_no_statistics(client) -> None:
     assert "Simulate it again" in said["errors"][""]
 
 
+def test_the_range_of_periods_that_matters(client, state, done, same) -> None:
+    found = client.ask("/api/periods", state)  # of the set, which ran
+    assert found["shortest"] == pytest.approx(0.2, rel=1e-2)
+    assert found["longest"] == pytest.approx(min(same.rocking_period, 4.0), rel=1e-2)
+    alone = client.ask("/api/periods", client.state(structure=STRUCTURE, scale=0.01))  # does not lift
+    assert alone["longest"] == pytest.approx(1.0, rel=1e-2)
+
+
 def test_a_set_that_is_no_longer_kept_is_told(client, state, done, monkeypatch) -> None:
     monkeypatch.setattr(_record_sets, "_SETS", LatestValuesCache(1))
     assert "Simulate it again" in client.refused(f"/api/study/record_set/{done[0]}", state)[""]
@@ -239,6 +247,8 @@ def test_the_set_on_the_page(visit, link, state, same, axe) -> None:
     assert "chosen for periods up to 2 s" in warned.inner_text()
     assert page.locator('#record-set .checks [data-check="story drift"] [data-name="ok"]').inner_text() == "fails"
     assert page.locator('#record-set .checks [data-check="rotation"] [data-name="ok"]').inner_text() == "ok"
+    assert page.locator("#worst").get_attribute("data-worst") == "story drift"
+    assert "fails" in page.locator("#worst").inner_text()
     page.get_by_label("Value for design").select_option("")  # needs no other run
     visitor.wait_for(design, same.statistics.loc["max_rotation", "worst"])
     visitor.fill("limits.drift_ratio", "1")
@@ -251,6 +261,9 @@ def test_the_set_on_the_page(visit, link, state, same, axe) -> None:
     for rules in ([], ["color-contrast"]):  # in the other theme, only contrast differs
         assert axe(page, *rules) == []
         page.click("#theme")
+    page.locator("#longer").click()  # the range ends at the rocking period, or with the target
+    page.wait_for_function("() => rockflexPage.state.target.longest > 2")
+    page.wait_for_function("() => !document.querySelector('#longer')?.checkVisibility()")
     visitor.fill("record_set.scale", "2")
     page.get_by_text("The input has changed: simulate again.").wait_for()
     page.get_by_label("Records", exact=True).select_option("")

@@ -1,6 +1,8 @@
 """A set of records of the Response tab: its runs as a job, and its statistics, design values and checks."""
 
 import json
+import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
@@ -21,18 +23,26 @@ from rockflex.response._response import Response
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._alternatives import model_of_alternative, next_free_name
+from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._jobs import RunsJob
-from rockflex.web._limits import check_size_of_set
+from rockflex.web._limits import check_size_of_set, check_work_of_runs
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._response import checks_view
 from rockflex.web._script import record_set_script
-from rockflex.web._selection import SELECTED, SELECTIONS, VisitorRecords, records_of_named_suites
+from rockflex.web._selection import (
+    SELECTED,
+    SELECTIONS,
+    VisitorRecords,
+    records_of_named_suites,
+    target_spectrum_of_choice,
+)
 from rockflex.web._state import PageState, refusals_of_alternative
 from rockflex.web._structure import BuiltStructure, build_page_structure, ground_under_page_structure
 from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
+LEAST_PERIOD = 0.02  # s
 CURVE_POINTS = 500  # of the rotation under one record
 MAX_KEPT_BYTES = 200_000_000  # of the states of all sets in memory
 
@@ -218,6 +228,34 @@ def _comparison_report(job: RecordSetJob, state: PageState) -> str:
         return run_report_as_html(comparison, sets=tuple(sets), checks=tables, **told)
 
 
+LEAST_SHARE = 0.2  # of the first period, from which the range begins (EN 1998-1:2004, 3.2.3.1.2)
+
+
+def periods_view(state: PageState, uploads: UploadedRecords) -> dict[str, float]:
+    """Return the range of periods in s that matters: from 0.2 T_1 to the period that rocking reaches.
+
+    It is reached under the set, if the server has it, and else under the record of the page. No target goes on further
+    than it is defined.
+    """
+    built = build_page_structure(state.structure)
+    p, known = built.properties, None
+    with suppress(Refusal):
+        known = _SETS.get(record_set_study(state.model_copy(update={"alternatives": []}), uploads).own.key)
+    if known is None:
+        motion, label = chosen_motion(state.record, uploads).scaled(state.scale), model_of_alternative(state)
+        options = state.run_options(ground_under_page_structure(state.ground, p))
+        with errors_as_refusals("target.longest", f"{label}: "):
+            case = options.case(parse_model(label), p, history=True, floors=False)
+            check_work_of_runs([case], motion)
+            run = case.run(motion)
+        known = RecordSet(responses=(run,), motions=(motion,), properties=p, rule=None, periods=None)
+    target = target_spectrum_of_choice(state.target)
+    longest = min(known.rocking_period, float(target.periods[-1]))
+    first = 2.0 * math.pi / float(p.omega[0]) if p.n_modes else longest
+    shortest = max(LEAST_SHARE * first, float(target.periods[0]), LEAST_PERIOD)
+    return {"shortest": float(f"{shortest:.3g}"), "longest": float(f"{max(longest, 1.01 * shortest):.3g}")}
+
+
 def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
     """Return the progress; of a finished set its peaks, statistics, checks, warnings, and rotations over time."""
     view: dict[str, Any] = {
@@ -242,10 +280,18 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
          "pga": motion.pga, **_rotation_curve(run)}
         for run, motion in zip(found.responses, found.motions, strict=True)
     ]  # fmt: skip
+    reached = found.rocking_period
+    view["short"] = found.periods is not None and found.periods[1] < min(reached, _longest_of_target(state))
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
     view["checks"] = checks_view(found, state, friction=job.study.own.friction)
     view["compared"] = _compared_view(job, state)
     return as_json_value(view)
+
+
+def _longest_of_target(state: PageState) -> float:
+    with suppress(Refusal):
+        return float(target_spectrum_of_choice(state.target).periods[-1])
+    return 0.0
 
 
 def _rotation_curve(run: Response) -> dict[str, str]:

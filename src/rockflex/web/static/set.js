@@ -1,12 +1,13 @@
 // A set of records as one result: the peaks of each, their statistics, the value for design, and the checks.
 
 import { Chart } from "./chart.js";
-import { checksTable } from "./checks.js";
+import { checksTable, worstCheck } from "./checks.js";
 import { explained } from "./choices.js";
 import { decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
 import { select } from "./form.js";
 import { assumed, choices, recordsOf, reports, Study } from "./jobs.js";
 import { legend } from "./marks.js";
+import { suitPeriods } from "./tabs/target.js";
 import { counted, t } from "./texts.js";
 import { explainedOutputs, headed, unit } from "./units.js";
 
@@ -48,6 +49,9 @@ export function recordSet(app, compared) {
   const [head, warned] = [h("p", { class: "answer" }), h("div", { class: "warning", role: "alert" })];
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
   const beside = h("div"); // the alternatives
+  const longer = h("p", { class: "buttons" }, h("button", { type: "button", id: "longer", onclick: async () => {
+    if (await suitPeriods(app, () => results.closest(".columns"))) study.run.click();
+  } }, t("Choose records from 0.2 T₁ to the rocking period")));
   const results = h("div", { class: "results", id: "record-set" }, drawing, beside);
   const study = new Study(app, "record_set", {
     results, show, words: WORDS_OF_SET, example: () => null, key: () => keyOfSet(app),
@@ -68,8 +72,9 @@ export function recordSet(app, compared) {
     const now = shown.querySelector("select").value || "max_rotation";
     const names = view.demands.map((each) => each.name);
     shown.setOptions(view.demands.map((each) => [each.name, plain(each)]), names.includes(now) ? now : names[0]);
-    head.textContent = summary(view);
-    warned.replaceChildren(...view.warnings.map((text) => h("p", {}, text)));
+    const worst = worstCheck(view.checks);
+    head.replaceChildren(...(worst ? [h("b", { class: worst.fails ? "overturned" : null, id: "worst", "data-worst": worst.name }, `${worst.text}. `)] : []), summary(view));
+    warned.replaceChildren(...view.warnings.map((text) => h("p", {}, text)), ...(view.short ? [longer] : []));
     warned.hidden = !view.warnings.length;
     drawPeaks();
     drawRotations();
