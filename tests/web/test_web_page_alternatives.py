@@ -84,6 +84,31 @@ def test_charts_and_drawing_of_the_response_have_them(visitor, el_centro) -> Non
 
 
 @pytest.mark.slow
+def test_they_are_compared_under_the_set_on_both_tabs(visitor) -> None:
+    """On the Structure tab too; what makes each another one is said."""
+    page = visitor.page
+    page.locator("#keep").click()
+    visitor.fill("structure.frame.aspect_ratio", "8")
+    page.get_by_label("Compared under").select_option("set")
+    moments = '#under-set tr[data-demand="max_base_moment"] td'
+    page.wait_for_selector(moments)
+    assert page.locator(moments).count() == 3  # A, the present one, and the fixed base
+    seen = [each.get_attribute("data-value") for each in page.locator(moments).all()]
+    assert len(set(seen)) == 3
+    assert "10 → 8" in page.locator("#under-set tbody tr").first.inner_text()
+    assert page.locator("#under-set [data-check=rotation] td").count() == 3
+    assert not page.locator("#differences").is_visible()
+    with page.expect_download() as got:
+        page.locator('#alternatives [data-file="comparison"]:visible').click()
+    assert "B to A" in got.value.path().read_text("utf-8")
+    visitor.tab("response")
+    page.wait_for_selector(f"#record-set {moments}")
+    assert [each.get_attribute("data-value") for each in page.locator(moments).all()] == seen
+    page.locator('[aria-label="Remove: A"]').click()
+    page.wait_for_selector("#under-set", state="hidden")
+
+
+@pytest.mark.slow
 def test_edit_again_changes_the_models_of_another_kind(visitor) -> None:
     keep_and_widen(visitor)
     page = visitor.page

@@ -295,6 +295,13 @@ def test_records_are_chosen_for_codes_and_tables(visitor) -> None:
     assert [row.get_attribute("data-record") for row in rows.all()] == [names[0] for names in chosen.names]
     factors = [float(cell.get_attribute("data-value")) for cell in page.locator('#chosen [data-name="factor"]').all()]
     assert factors == pytest.approx(chosen.factors.tolist(), rel=1e-12)
+    page.locator("#periods").click()
+    page.wait_for_function("""() => document.querySelector('[data-path="target.shortest"] input').value === '0.2'""")
+    page.wait_for_function("""() => document.querySelector('[data-path="target.longest"] input').value !== '2'""")
+    assert (
+        float(page.locator('[data-path="target.longest"] input').input_value()) == visitor.state()["target"]["longest"]
+    )
+    visitor.fill("target.longest", "2")
     visitor.fill("target.count", "4")
     page.get_by_label("Ground type").select_option("A")
     page.get_by_label("Spectrum of a record").select_option("rotd50")

@@ -77,6 +77,37 @@ def test_rule_and_limits_change_without_another_run(client, state, done, same) -
     )
 
 
+def test_alternatives_are_compared_under_the_set(client, state, done) -> None:
+    """All are the library's, and what ran once is not run again."""
+    wide = {"name": "Wide", "frame": STRUCTURE["frame"] | {"aspect_ratio": 6.0}}
+    kept = [{"name": "wide", "structure": wide, "models": ["fixed", "MDOF-S"]}]
+    state = state | {"alternatives": kept, "limits": {"drift_ratio": 0.01}}
+    token, answer = client.study("record_set", state)
+    assert (answer["status"], answer["total"]) == ("done", 21)
+    found = answer["compared"]
+    assert [each["name"] for each in found["columns"]] == ["wide", "A", "fixed"]
+    chosen = rf.load_suite("fema-p695-far-field").select(TARGET, 7, (0.2, 2.0), scale_limits=(0.25, 4.0))
+    for place, (aspect, model) in enumerate([(6.0, "MDOF-S"), (8.0, "MDOF-S"), (8.0, "fixed")]):
+        own = rf.simulate_set(make_frame(aspect_ratio=aspect), chosen, model, rule="ec8", free_vibration=5.0)
+        for demand in found["demands"]:
+            known = own.statistics["design"].to_dict().get(demand["name"])
+            assert demand["values"][place] == known
+        table = rf.check(own, rf.CheckLimits(drift_ratio=0.01))
+        shown = found["columns"][place]
+        assert [each["ratio"] for each in shown["checks"]] == [row.ratio for row in table.rows]
+        lifted = sum(run.status == "rocking" for run in own.responses)
+        assert shown["lifted"] == (0 if model == "fixed" else lifted)
+    report = client.download(f"/api/study/record_set/{token}/comparison", state)[1].decode()
+    base = next(each for each in found["demands"] if each["name"] == "max_base_moment")["values"]
+    assert all(f'data-of="max_base_moment" data-value="{value!r}"' in report for value in base)
+    assert "story drift" in report
+    begun = time.monotonic()
+    client.study("record_set", state | {"alternatives": [*kept, {**kept[0], "name": "again"}]})
+    assert time.monotonic() - begun < 3.0  # nothing is run a second time
+    refused = client.made(f"/api/study/record_set/{done[0]}/comparison", state)
+    assert "Keep the present structure" in refused["errors"]["alternatives"]
+
+
 def test_demands_checks_and_the_report_are_in_the_units_of_the_page(client, state, done) -> None:
     path, state = f"/api/study/record_set/{done[0]}", state | {"units": "kip-in"}
     answer = client.ask(path, state)
@@ -122,6 +153,14 @@ def test_a_set_is_cancelled_and_has_no_statistics(client) -> None:
     said = client.made(f"/api/study/record_set/{token}/report", state)
     assert said["status"] == "failed"
     assert "Simulate it again" in said["errors"][""]
+
+
+def test_the_range_of_periods_that_matters(client, state, done, same) -> None:
+    found = client.ask("/api/periods", state)  # of the set, which ran
+    assert found["shortest"] == pytest.approx(0.2, rel=1e-2)
+    assert found["longest"] == pytest.approx(min(same.rocking_period, 4.0), rel=1e-2)
+    alone = client.ask("/api/periods", client.state(structure=STRUCTURE, scale=0.01))  # does not lift
+    assert alone["longest"] == pytest.approx(1.0, rel=1e-2)
 
 
 def test_a_set_that_is_no_longer_kept_is_told(client, state, done, monkeypatch) -> None:
@@ -208,6 +247,8 @@ def test_the_set_on_the_page(visit, link, state, same, axe) -> None:
     assert "chosen for periods up to 2 s" in warned.inner_text()
     assert page.locator('#record-set .checks [data-check="story drift"] [data-name="ok"]').inner_text() == "fails"
     assert page.locator('#record-set .checks [data-check="rotation"] [data-name="ok"]').inner_text() == "ok"
+    assert page.locator("#worst").get_attribute("data-worst") == "story drift"
+    assert "fails" in page.locator("#worst").inner_text()
     page.get_by_label("Value for design").select_option("")  # needs no other run
     visitor.wait_for(design, same.statistics.loc["max_rotation", "worst"])
     visitor.fill("limits.drift_ratio", "1")
@@ -220,6 +261,9 @@ def test_the_set_on_the_page(visit, link, state, same, axe) -> None:
     for rules in ([], ["color-contrast"]):  # in the other theme, only contrast differs
         assert axe(page, *rules) == []
         page.click("#theme")
+    page.locator("#longer").click()  # the range ends at the rocking period, or with the target
+    page.wait_for_function("() => rockflexPage.state.target.longest > 2")
+    page.wait_for_function("() => !document.querySelector('#longer')?.checkVisibility()")
     visitor.fill("record_set.scale", "2")
     page.get_by_text("The input has changed: simulate again.").wait_for()
     page.get_by_label("Records", exact=True).select_option("")

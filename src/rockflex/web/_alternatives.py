@@ -34,18 +34,25 @@ def alternatives_of_state(state: PageState) -> dict[str, PageState]:
     if not any(_runs_as(each, state) for each in state.alternatives):
         if len(found) == MAX_ALTERNATIVES:
             raise Refusal({"alternatives": f"they are {MAX_ALTERNATIVES + 1} with the present one. Remove one."})
-        found[next(letter for letter in ascii_uppercase if letter not in found)] = state
+        found[next_free_name(state)] = state
     return found
 
 
-def _model(state: PageState | Alternative) -> str:
+def next_free_name(state: PageState) -> str:
+    """Return the letter of the present structure: the first that no kept one has."""
+    return next(letter for letter in ascii_uppercase if letter not in {each.name for each in state.alternatives})
+
+
+def model_of_alternative(state: PageState | Alternative) -> str:
     """Return the model of an alternative: the first that lifts, if one does."""
     return next((label for label in state.models if parse_model(label).lifts), state.models[0])
 
 
 def _runs_as(kept: Alternative, state: PageState) -> bool:
     own = Alternative.model_fields.keys() - {"name", "models"}
-    return _model(kept) == _model(state) and all(getattr(kept, name) == getattr(state, name) for name in own)
+    return model_of_alternative(kept) == model_of_alternative(state) and all(
+        getattr(kept, name) == getattr(state, name) for name in own
+    )
 
 
 def project_of_state(state: PageState, uploads: UploadedRecords) -> Project:
@@ -55,7 +62,7 @@ def project_of_state(state: PageState, uploads: UploadedRecords) -> Project:
     for name, each in alternatives_of_state(state).items():
         with nullcontext() if each is state else refusals_of_alternative(name), errors_as_refusals(""):
             built = build_page_structure(each.structure)
-            ground, model = ground_under_page_structure(each.ground, built.properties), _model(each)
+            ground, model = ground_under_page_structure(each.ground, built.properties), model_of_alternative(each)
             options = each.run_options(ground)
             cases.append(options.case(parse_model(model), built.properties, history=True, floors=True))
             yielding = each.hysteresis() if parse_model(model).yields else None

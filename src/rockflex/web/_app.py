@@ -40,6 +40,7 @@ from rockflex.web._links import usable_page_state
 from rockflex.web._projects import read_project
 from rockflex.web._protection import KnownHosts, SecurityHeaders, TokenRequired
 from rockflex.web._readers import Readers
+from rockflex.web._record_sets import periods_view
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
@@ -393,6 +394,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         Route("/api/folder/{token}", server.folder_report),
         Route("/api/selection", view(selection, server.selections), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
+        Route("/api/periods", view(lambda state, _: periods_view(state, uploads)), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),

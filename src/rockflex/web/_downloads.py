@@ -275,7 +275,8 @@ def study_file_maker(
 ) -> Callable[[Progress], tuple[str, bytes]]:
     """Return the function that makes a file of a study from its runs so far, as `file_maker` does.
 
-    It is the ``"table"``, the ``"figure"`` or, of a study that has one, the ``"report"``, also with ``"-pdf"``.
+    It is the ``"table"``, the ``"figure"`` or, of a study that has one, the ``"report"`` or the ``"comparison"``, also
+    with ``"-pdf"``.
     """
 
     def table(_: Progress) -> tuple[str, bytes]:
@@ -287,9 +288,12 @@ def study_file_maker(
         with errors_as_refusals(""):
             return f"{page.figure_name}.svg", figure_as_svg(page.figure(job, state)).encode()
 
+    def page_of(write: Callable[[RunsJob, PageState], str], name: str) -> Callable[[Progress], tuple[str, bytes]]:
+        return lambda _: _printed(what, f"{name}.html", write(job, state).encode())
+
     makers = {"table": table, "figure": figure}
-    if (write := page.report) is not None:
-        makers["report"] = lambda _: _printed(what, "report.html", write(job, state).encode())
+    written = {"report": page.report, "comparison": page.comparison}
+    makers |= {name: page_of(write, name) for name, write in written.items() if write is not None}
     maker = makers.get(REPORTS_AS_PDF.get(what, what))
     if maker is None:
         raise _unknown_file(what)

@@ -175,15 +175,16 @@ def _states_of_run(task: Task) -> float:
     return task.record.size + (task.free_vibration or 0.0) / task.dt
 
 
-def check_size_of_set(case: PreparedCase, motions: Sequence[GroundMotion], path: str) -> None:
+def check_size_of_set(cases: Sequence[PreparedCase], motions: Sequence[GroundMotion], path: str) -> None:
     """Refuse a set of records whose runs take too long, individually or together, or whose histories take too much."""
-    tasks = [case.task(motion) for motion in motions]
+    tasks = [case.task(motion) for case in cases for motion in motions]
     work, states = sum(_checked_work_of_run(task, path) for task in tasks), sum(map(_states_of_run, tasks))
-    samples = sum(motion.acceleration.size for motion in motions)
+    samples = len(cases) * sum(motion.acceleration.size for motion in motions)
     if work > MAX_STUDY_COST or samples > MAX_SET_SAMPLES or states > MAX_SET_STATES:
+        of = f" for {len(cases)} structures" if cases[1:] else ""
         message = (
-            f"{len(motions)} records with {samples} samples are too many for a page, which keeps all histories. Choose "
-            "fewer records or a model with fewer modes, or use rockflex check."
+            f"{len(motions)} records with {samples} samples{of} are too many for a page, which keeps all histories. "
+            "Choose fewer records or a model with fewer modes, or use rockflex check."
         )
         raise Refusal({path: message})
 

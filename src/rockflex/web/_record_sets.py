@@ -1,7 +1,10 @@
 """A set of records of the Response tab: its runs as a job, and its statistics, design values and checks."""
 
-import secrets
+import json
+import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -12,23 +15,34 @@ from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.report.run._report_page import run_report_as_html
+from rockflex.response._comparison import Comparison
 from rockflex.response._limit_checks import check
-from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS
+from rockflex.response._outputs import DEMANDS_BY_RECORD, DEMANDS_OF_SET, OUTPUTS
 from rockflex.response._record_set import RecordSet, checked_rule
 from rockflex.response._response import Response
+from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.studies._prepared_case import PreparedCase
+from rockflex.web._alternatives import model_of_alternative, next_free_name
+from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._jobs import RunsJob
-from rockflex.web._limits import check_size_of_set
+from rockflex.web._limits import check_size_of_set, check_work_of_runs
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._response import checks_view
 from rockflex.web._script import record_set_script
-from rockflex.web._selection import SELECTED, SELECTIONS, VisitorRecords, records_of_named_suites
-from rockflex.web._state import PageState
+from rockflex.web._selection import (
+    SELECTED,
+    SELECTIONS,
+    VisitorRecords,
+    records_of_named_suites,
+    target_spectrum_of_choice,
+)
+from rockflex.web._state import PageState, refusals_of_alternative
 from rockflex.web._structure import BuiltStructure, build_page_structure, ground_under_page_structure
 from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
+LEAST_PERIOD = 0.02  # s
 CURVE_POINTS = 500  # of the rotation under one record
 MAX_KEPT_BYTES = 200_000_000  # of the states of all sets in memory
 
@@ -41,66 +55,205 @@ _SETS = LatestValuesCache[RecordSet](MAX_KEPT_BYTES, _bytes_of_set)
 
 
 @dataclass(frozen=True, eq=False)
-class RecordSetStudy:
-    """The runs of one model under a set of records; `friction` tells whether the checks need what is required."""
+class RunsOfSet:
+    """The runs of one structure under a set; `friction` tells whether the checks need what is required.
 
+    `key` identifies what the runs are made from: whoever asks for the same has them at once.
+    """
+
+    name: str
+    state: PageState
     built: BuiltStructure
     case: PreparedCase
+    friction: bool
+    key: str
+
+
+@dataclass(frozen=True, eq=False)
+class RecordSetStudy:
+    """The runs of the present structure under a set of records, and of those that it is compared with."""
+
+    own: RunsOfSet
+    others: tuple[RunsOfSet, ...]
     records: VisitorRecords
     motions: tuple[GroundMotion, ...]
     periods: tuple[float, float] | None
-    friction: bool
-    state: PageState
+
+    @property
+    def all(self) -> tuple[RunsOfSet, ...]:
+        """The present structure, and the others."""
+        return self.own, *self.others
+
+    @property
+    def compared(self) -> tuple[RunsOfSet, ...]:
+        """Those side by side: the kept ones in their order, the present one unless it is kept, and the fixed base."""
+        kept = [each for each in self.others if each.name != FIXED]
+        present = [] if any(each.key == self.own.key for each in kept) else [self.own]
+        return (*kept, *present, *(each for each in self.others if each.name == FIXED))
+
+
+FIXED = "fixed"  # the present structure on a fixed base
 
 
 def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStudy:
-    """Return the runs of the set of records of a state."""
-    choice, label, built = state.record_set, state.model_of_set, build_page_structure(state.structure)
-    options = state.run_options(ground_under_page_structure(state.ground, built.properties))
-    with errors_as_refusals("record_set.model", f"{label}: "):
-        case = options.case(parse_model(label), built.properties, history=True, floors=True)
+    """Return the runs of the set of records of a state; with alternatives also theirs, and those of a fixed base."""
+    choice = state.record_set
     records = records_of_named_suites(state, choice.suites, uploads, "record_set.suites")
     motions = tuple(each if choice.scale == 1.0 else each.scaled(choice.scale) for each in records.load(Path()))
-    check_size_of_set(case, motions, "record_set.suites")
+    acting = _checksum_of_motions(motions)
+
+    def runs(name: str, each: PageState, label: str, path: str) -> RunsOfSet:
+        built = build_page_structure(each.structure)
+        ground = ground_under_page_structure(each.ground, built.properties) if label != FIXED else None
+        with errors_as_refusals(path, f"{label}: "):
+            options = each.run_options(ground)
+            case = options.case(parse_model(label), built.properties, history=True, floors=True)
+        friction = "friction" in state.limits and case.model.springs is None  # on springs it takes minutes
+        made_from = [each.structure.model_dump(exclude_none=True), each.option_keys([label]), label, friction]
+        made_from += [state.free_vibration, acting]
+        return RunsOfSet(name, each, built, case, friction, sha256(json.dumps(made_from).encode()).hexdigest())
+
+    own = runs(next_free_name(state), state, state.model_of_set, "record_set.model")
+    others = list[RunsOfSet]()
+    for kept in state.alternatives:
+        with refusals_of_alternative(kept.name):
+            others.append(runs(kept.name, state.kept_state(kept), model_of_alternative(kept), "alternatives"))
+    if others and own.built.properties.n_modes and FIXED not in (each.name for each in others):
+        others.append(runs(FIXED, state, FIXED, "alternatives"))
+    check_size_of_set([each.case for each in (own, *others)], motions, "record_set.suites")
     with errors_as_refusals("record_set.rule"):
         checked_rule(choice.rule or None, len(motions))
     periods = None
     if choice.suites == [SELECTED]:
         chosen = SELECTIONS.of(state, uploads)[0].periods
         periods = (float(chosen[0]), float(chosen[-1]))
-    # On springs the required friction takes minutes.
-    friction = "friction" in state.limits and case.model.springs is None
-    return RecordSetStudy(built, case, records, motions, periods, friction, state)
+    return RecordSetStudy(own, tuple(others), records, motions, periods)
+
+
+def _checksum_of_motions(motions: tuple[GroundMotion, ...]) -> str:
+    found = sha256()
+    for each in motions:
+        found.update(f"{each.name} {each.dt!r} {each.vertical is not None} {each.acceleration.size}".encode())
+        found.update(each.acceleration.tobytes())
+        found.update(b"" if each.vertical is None else each.vertical.tobytes())
+    return found.hexdigest()
 
 
 class RecordSetJob(RunsJob):
-    """A set of records, computed record after record."""
+    """Sets of records, computed record after record."""
 
     def __init__(self, study: RecordSetStudy, kind: str) -> None:
         super().__init__(kind)
-        self.study, self.key = study, secrets.token_hex()
+        self.study = study
 
     def work(self) -> None:
         """Run all records, and compute of each what the views of the set ask for at once."""
-        found, study = list[Response](), self.study
-        for motion in study.motions:
+        for each in self.study.all:
+            if _SETS.get(each.key) is None:
+                self._run(each)
+            else:
+                self.runs += len(self.study.motions)
+
+    def _run(self, runs: RunsOfSet) -> None:
+        found = list[Response]()
+        for motion in self.study.motions:
             check_interruption()
             with errors_as_refusals("record_set.suites", f"{motion.name}: "):
-                found.append(study.case.run(motion))
+                found.append(runs.case.run(motion))
             _ = found[-1].warnings  # its energies, which the response then has
-            check(found[-1], study.state.check_limits(friction=study.friction))
+            check(found[-1], self.study.own.state.check_limits(friction=runs.friction))
             self.runs += 1
-        given: dict[str, Any] = {"properties": study.built.properties, "rule": None, "periods": study.periods}
-        _SETS.put(self.key, RecordSet(responses=tuple(found), motions=study.motions, **given))
+        given: dict[str, Any] = {"properties": runs.built.properties, "rule": None, "periods": None}
+        _SETS.put(runs.key, RecordSet(responses=tuple(found), motions=self.study.motions, **given))
 
 
-def _set_of_job(job: RecordSetJob, state: PageState) -> RecordSet:
-    """Return the set with the rule of a state."""
-    found = _SETS.get(job.key)
+def _set_of_job(job: RecordSetJob, state: PageState, runs: RunsOfSet | None = None) -> RecordSet:
+    """Return a set, by default that of the present structure, with the rule of a state."""
+    found = _SETS.get((runs or job.study.own).key)
     if job.status != "done" or found is None:
         raise Refusal("The server does not have all records of this set (any more). Simulate it again.", 404)
     with errors_as_refusals("record_set.rule"):
-        return replace(found, rule=checked_rule(state.record_set.rule or None, len(found.responses)))
+        rule = checked_rule(state.record_set.rule or None, len(found.responses))
+    return replace(found, rule=rule, periods=job.study.periods)
+
+
+def _compared_view(job: RecordSetJob, state: PageState) -> dict[str, Any] | None:
+    """Return values for design and checks of all alternatives; None without one."""
+    if not job.study.others:
+        return None
+    compared = job.study.compared
+    sets = [_set_of_job(job, state, each) for each in compared]
+    design = [found.statistics["design"].to_dict() for found in sets]
+    demands = [name for name in OUTPUTS if name in {*DEMANDS_OF_SET} & {each for one in design for each in one}]
+    tables = [checks_view(found, state, friction=each.friction) for found, each in zip(sets, compared, strict=True)]
+    columns = list[dict[str, Any]]()
+    for each, found, table in zip(compared, sets, tables, strict=True):
+        ran = found.responses[0].history
+        lifted = sum(run.status != "no_uplift" for run in found.responses) if ran and ran.model.lifts else 0
+        columns.append({"name": each.name, "lifted": lifted, "fell": found.n_overturned, "checks": table["rows"],
+                        "model": found.responses[0].model, "present": each is job.study.own})  # fmt: skip
+    units = UnitSystem(state.units)
+    return {
+        "columns": columns,
+        "records": len(job.study.motions),
+        "demands": [
+            {"name": name, "symbol": OUTPUTS[name].symbol, "unit": OUTPUTS[name].unit_in(units).name,
+             "size": OUTPUTS[name].unit_in(units).size, "values": [each.get(name) for each in design]}
+            for name in demands
+        ],
+    }  # fmt: skip
+
+
+def _comparison_report(job: RecordSetJob, state: PageState) -> str:
+    """Return the report of all alternatives under the set, with their values for design and their checks."""
+    import pandas as pd
+
+    compared = job.study.compared[:MAX_ALTERNATIVES]
+    if len(compared) < 2:
+        raise Refusal({"alternatives": "there is none to compare with. Keep the present structure, and change it."})
+    sets, names = [_set_of_job(job, state, each) for each in compared], [each.name for each in compared]
+    frames = [found.peaks.reset_index().assign(structure=name) for name, found in zip(names, sets, strict=True)]
+    governing = int(sets[0].peaks["max_rotation"].to_numpy(float).argmax())
+    comparison = Comparison(
+        tuple(names),
+        tuple(each.built.structure for each in compared),
+        pd.concat(frames, ignore_index=True),
+        job.study.motions[governing],
+        tuple(found.responses[governing] for found in sets),
+    )
+    limits = [state.check_limits(friction=each.friction) for each in compared]
+    tables = tuple(check(found, own) for found, own in zip(sets, limits, strict=True))
+    told: dict[str, Any] = {"units": state.units, "language": state.language, **state.head_texts()}
+    with errors_as_refusals("alternatives"):
+        return run_report_as_html(comparison, sets=tuple(sets), checks=tables, **told)
+
+
+LEAST_SHARE = 0.2  # of the first period, from which the range begins (EN 1998-1:2004, 3.2.3.1.2)
+
+
+def periods_view(state: PageState, uploads: UploadedRecords) -> dict[str, float]:
+    """Return the range of periods in s that matters: from 0.2 T_1 to the period that rocking reaches.
+
+    It is reached under the set, if the server has it, and else under the record of the page. No target goes on further
+    than it is defined.
+    """
+    built = build_page_structure(state.structure)
+    p, known = built.properties, None
+    with suppress(Refusal):
+        known = _SETS.get(record_set_study(state.model_copy(update={"alternatives": []}), uploads).own.key)
+    if known is None:
+        motion, label = chosen_motion(state.record, uploads).scaled(state.scale), model_of_alternative(state)
+        options = state.run_options(ground_under_page_structure(state.ground, p))
+        with errors_as_refusals("target.longest", f"{label}: "):
+            case = options.case(parse_model(label), p, history=True, floors=False)
+            check_work_of_runs([case], motion)
+            run = case.run(motion)
+        known = RecordSet(responses=(run,), motions=(motion,), properties=p, rule=None, periods=None)
+    target = target_spectrum_of_choice(state.target)
+    longest = min(known.rocking_period, float(target.periods[-1]))
+    first = 2.0 * math.pi / float(p.omega[0]) if p.n_modes else longest
+    shortest = max(LEAST_SHARE * first, float(target.periods[0]), LEAST_PERIOD)
+    return {"shortest": float(f"{shortest:.3g}"), "longest": float(f"{max(longest, 1.01 * shortest):.3g}")}
 
 
 def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
@@ -109,7 +262,7 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         "status": job.status,
         "message": job.message,
         "done": job.runs,
-        "total": len(job.study.motions),
+        "total": len(job.study.motions) * len(job.study.all),
     }
     view["ready"] = job.status == "done"
     if not view["ready"]:
@@ -127,9 +280,18 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
          "pga": motion.pga, **_rotation_curve(run)}
         for run, motion in zip(found.responses, found.motions, strict=True)
     ]  # fmt: skip
+    reached = found.rocking_period
+    view["short"] = found.periods is not None and found.periods[1] < min(reached, _longest_of_target(state))
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
-    view["checks"] = checks_view(found, state, friction=job.study.friction)
+    view["checks"] = checks_view(found, state, friction=job.study.own.friction)
+    view["compared"] = _compared_view(job, state)
     return as_json_value(view)
+
+
+def _longest_of_target(state: PageState) -> float:
+    with suppress(Refusal):
+        return float(target_spectrum_of_choice(state.target).periods[-1])
+    return 0.0
 
 
 def _rotation_curve(run: Response) -> dict[str, str]:
@@ -147,16 +309,16 @@ def _record_set_figure(job: RecordSetJob, state: PageState) -> Any:
 
 def _record_set_report(job: RecordSetJob, state: PageState) -> str:
     found, study = _set_of_job(job, state), job.study
-    name, n = study.state.structure.name or translated("Structure"), len(found.responses)
+    name, n = study.own.state.structure.name or translated("Structure"), len(found.responses)
     return run_report_as_html(
         found,
-        structure=study.built.structure,
+        structure=study.own.built.structure,
         units=state.units,
         language=state.language,
         title=translated(
             "{structure} under {n} record" if n == 1 else "{structure} under {n} records", structure=name, n=n
         ),
-        limits=state.check_limits(friction=study.friction),
+        limits=state.check_limits(friction=study.own.friction),
     )
 
 
@@ -170,4 +332,5 @@ RECORD_SET_PAGE = StudyPage(
     figure_name="records",
     job=RecordSetJob,
     report=_record_set_report,
+    comparison=_comparison_report,
 )

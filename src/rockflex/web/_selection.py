@@ -1,9 +1,10 @@
 """Records for studies: embedded suites, the visitor's folder, and records selected for a target spectrum."""
 
 import json
+import math
 import warnings
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -25,6 +26,7 @@ from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import unclear_commas_text
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState, TargetChoice
+from rockflex.web._structure import build_page_structure
 from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
 VISITOR_FOLDER = "given"  # stands for the visitor's folder among the names of suites
@@ -224,6 +226,7 @@ def selection_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]
             "target": target.name,
             "damping": target.damping_ratio,
             "range": [low, high],
+            "first_period": _first_period(state),
             "offered": len(suite_to_select_from(state, uploads)),
             "periods": periods,
             "wanted": target.at(periods),
@@ -239,6 +242,13 @@ def selection_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]
             "notes": notes,
         }
     )
+
+
+def _first_period(state: PageState) -> float | None:
+    with suppress(Refusal):  # records can be chosen before the structure is complete
+        p = build_page_structure(state.structure).properties
+        return 2.0 * math.pi / float(p.omega[0]) if p.n_modes else None
+    return None
 
 
 def scale_factor_view(state: PageState, uploads: UploadedRecords, period: object) -> dict[str, Any]:

@@ -58,8 +58,8 @@ class StudyPage:
         Return a DataFrame and a Figure of the runs so far. `table_name` and `figure_name` are the names of the files.
     script : callable
         Returns a Python program that repeats the study.
-    report : callable or None
-        Returns the report of the study as a page of HTML, where there is one.
+    report, comparison : callable or None
+        Return the report of the study, and of it and the alternatives, as a page of HTML, where there is one.
     """
 
     study: Callable[[PageState, UploadedRecords], Any]
@@ -71,6 +71,7 @@ class StudyPage:
     figure_name: str
     job: Callable[[Any, str], RunsJob] = lambda study, kind: StudyJob(study_plan(study, kind), kind)
     report: Callable[[Any, PageState], str] | None = None
+    comparison: Callable[[Any, PageState], str] | None = None
 
 
 def common_study_content(

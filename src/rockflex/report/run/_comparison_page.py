@@ -11,6 +11,7 @@ from rockflex.foundation.units import UnitSystem
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
+from rockflex.report.run._run_checks import limit_check_table
 from rockflex.report.run._run_page import figures_of_runs, warnings_of_runs
 from rockflex.report.run._sheet import (
     MAX_LETTERS,
@@ -27,7 +28,9 @@ from rockflex.report.run._sheet import (
 )
 from rockflex.response._comparison import STATISTICS, Comparison
 from rockflex.response._history import History
-from rockflex.response._outputs import OUTPUTS, legend
+from rockflex.response._limit_checks import CheckTable
+from rockflex.response._outputs import DEMANDS_OF_SET, OUTPUTS, legend
+from rockflex.response._record_set import RecordSet
 from rockflex.structure._rocking import RockingProperties
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
@@ -46,6 +49,7 @@ class ComparisonPage(OneSheet):
     alternatives: ReportTable
     lines: Sequence[tuple[str, str]]
     demands: ReportTable
+    limits: ReportTable | None
     record: ReportedRecord
 
     @property
@@ -54,7 +58,8 @@ class ComparisonPage(OneSheet):
         lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
         rows = sum(max(math.ceil(len(cell.text) / _CELL_LETTERS) for cell in row) for row in self.alternatives.rows)
         texts = bool(self.texts.heads) + sum(map(line_count_of_text, (*self.warnings, *self.texts.notes)))
-        return _OUTLINES + STRIP[1] + ROW * (15 + rows + lines + 1.2 * len(self.demands.rows) + texts)
+        checks = 2 + len(self.limits.rows) if self.limits else 0
+        return _OUTLINES + STRIP[1] + ROW * (15 + rows + lines + 1.2 * len(self.demands.rows) + texts + checks)
 
     @property
     def sections(self) -> list[tuple[str, Sequence[Block]]]:
@@ -62,6 +67,7 @@ class ComparisonPage(OneSheet):
         return [
             (translated("Alternatives"), [Drawing("outlines"), self.alternatives, self.lines]),
             (" ".join((translated("Demands"), self.records)).strip(), [self.demands]),
+            *([(translated("Checks"), [self.limits])] if self.limits else []),
             (
                 translated("Governing record: {name}" if self.several else "Record: {name}", name=self.record.name),
                 [Drawing("strip", 0.5), self.record.facts, Drawing("sheet")],
@@ -69,8 +75,18 @@ class ComparisonPage(OneSheet):
         ]
 
 
-def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSystem) -> tuple[ComparisonPage, Figures]:
-    """Return the page of a comparison, and its figures."""
+def comparison_page(
+    comparison: Comparison,
+    texts: ReportTexts,
+    units: UnitSystem,
+    sets: Sequence[RecordSet] = (),
+    checks: Sequence[CheckTable] = (),
+) -> tuple[ComparisonPage, Figures]:
+    """Return the page of a comparison, and its figures.
+
+    With the `sets` of the alternatives under the same records, the demands are the values for design of their rule;
+    with their `checks` it has these as well.
+    """
     from rockflex.plot._comparison import draw_alternatives
 
     report = reported_alternatives(comparison, units)
@@ -78,7 +94,7 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
     total, several = comparison.n_records, comparison.n_records > 1
     names, tables = ", ".join(comparison.names), _report_tables
     usual = tables.title_of_several_text(names, total) if several else tables.title_text(names, record.name)
-    statistics = " / ".join(translated(STATISTICS[each]) for each in SHOWN)
+    statistics = translated("for design") if sets else " / ".join(translated(STATISTICS[each]) for each in SHOWN)
     fell = [
         translated(
             "{name} overturned under {n} of {total} records" if several else "{name} overturned",
@@ -96,7 +112,8 @@ def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSyste
         records=translated("of {n} records: {statistics}", n=total, statistics=statistics) if several else "",
         alternatives=alternatives_table(comparison, units),
         lines=[model_line(comparison), *_report_tables.assumption_lines(report), *_explained_demands(comparison)],
-        demands=demand_table(comparison, units),
+        demands=design_value_table(comparison, sets, units) if sets else demand_table(comparison, units),
+        limits=limit_check_table(list(comparison.names), checks, units) if checks else None,
         record=record,
         warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
     )
@@ -170,6 +187,26 @@ def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
             _joined([value_cell(each[demand][name], demand, unit.size) for each in values]) for name in comparison.names
         ]
         cells += [_joined([difference_cell(each[demand][name]) for each in differences]) for name in others]
+        rows.append(cells)
+    return ReportTable(heads, rows)
+
+
+def design_value_table(comparison: Comparison, sets: Sequence[RecordSet], units: UnitSystem) -> ReportTable:
+    """Return a row for each demand: its value for design of each alternative, and the differences in %."""
+    first, *others = comparison.names
+    heads = [(translated("demand"), ""), *((name, "") for name in comparison.names)]
+    heads += [(translated("{name} to {first}", name=name, first=first), "%") for name in others]
+    values = [found.statistics["design"].to_dict() for found in sets]
+    rows: list[Sequence[ReportCell]] = []
+    for demand in DEMANDS_OF_SET:
+        known = [float(each.get(demand, math.nan)) for each in values]
+        finite = [each for each in known if math.isfinite(each)]
+        if not finite:
+            continue
+        unit = OUTPUTS[demand].unit_in(units, largest=max(finite))
+        cells = [ReportCell(unit.heading(translated(OUTPUTS[demand].symbol)))]
+        cells += [value_cell(each if math.isfinite(each) else None, demand, unit.size) for each in known]
+        cells += [difference_cell(100.0 * (each / known[0] - 1.0) if known[0] else math.nan) for each in known[1:]]
         rows.append(cells)
     return ReportTable(heads, rows)
 

@@ -179,8 +179,8 @@ def _page_of_report(
             _refuse_unused_options("a set", given, ("structure", "limits"))
             page, figures = set_page(responses, texts, system, **given)
         elif isinstance(responses, Comparison):
-            _refuse_unused_options("a comparison", given, ())
-            page, figures = comparison_page(responses, texts, system)
+            _refuse_unused_options("a comparison", given, ("sets", "checks"))
+            page, figures = comparison_page(responses, texts, system, **given)
         else:
             page, figures = run_page(responses, texts, system, omitted=omitted, **options)
     return _with_decimal_commas(page) if chosen_language()[1] == "," else page, figures

@@ -30,6 +30,14 @@ export function limitsForm(app) {
     limits().map(entry));
 }
 
+// The check with the largest ratio, in words, and whether it fails; null without any.
+export function worstCheck({ rows }) {
+  const [worst] = rows.filter(({ ratio }) => ratio !== null).sort((a, b) => (b.ok === false) - (a.ok === false) || b.ratio - a.ratio);
+  if (!worst) return null;
+  const values = { check: t(worst.name), ratio: number(worst.ratio, 3) };
+  return { name: worst.name, fails: worst.ok === false, text: worst.ok === false ? t("{check} fails, {ratio}", values) : t("{check} is closest to its limit, {ratio}", values) };
+}
+
 // The heading and the table of the checks of `of`.
 export function checksTable({ rows, missing, unlimited }, of) {
   const head = [t("check"), t("result"), t("demand"), t("limit"), t("ratio"), t("source of the limit, or what happens")];

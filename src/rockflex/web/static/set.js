@@ -1,12 +1,13 @@
 // A set of records as one result: the peaks of each, their statistics, the value for design, and the checks.
 
 import { Chart } from "./chart.js";
-import { checksTable } from "./checks.js";
+import { checksTable, worstCheck } from "./checks.js";
 import { explained } from "./choices.js";
 import { decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
 import { select } from "./form.js";
 import { assumed, choices, recordsOf, reports, Study } from "./jobs.js";
 import { legend } from "./marks.js";
+import { suitPeriods } from "./tabs/target.js";
 import { counted, t } from "./texts.js";
 import { explainedOutputs, headed, unit } from "./units.js";
 
@@ -24,10 +25,20 @@ const statistics = () => [
   ["design", t("for design"), { color: "c1", width: 4.5 }],
 ];
 
-// Its form, and its results.
-export function recordSet(app) {
+export const WORDS_OF_SET = { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") };
+const modelOf = ({ models, record_set: { model } }) => (models.includes(model) ? model : models[0]);
+
+// What determines the runs of a set, those of the alternatives included.
+export function keyOfSet({ state }) {
+  const { record_set: { suites, scale }, ground, limits } = state;
+  return JSON.stringify([assumed(state, [modelOf(state)]), recordsOf(state, suites), scale, state.free_vibration,
+    !(ground?.springs || ground?.bed) && limits.friction !== undefined, state.alternatives]);
+}
+
+// Its form, and its results; `compared` takes each answer as well.
+export function recordSet(app, compared) {
   const choice = () => app.state.record_set;
-  const label = () => (app.state.models.includes(choice().model) ? choice().model : app.state.models[0]);
+  const label = () => modelOf(app.state);
   const { entry, list, suites } = choices(app, "record_set");
   const model = list("model", t("Model"), []);
   const rule = list("rule", t("Value for design"), rules());
@@ -37,28 +48,33 @@ export function recordSet(app) {
   const [keys, overKeys, tables] = [h("div"), h("div"), h("div")];
   const [head, warned] = [h("p", { class: "answer" }), h("div", { class: "warning", role: "alert" })];
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
-  const results = h("div", { class: "results", id: "record-set" }, drawing);
+  const beside = h("div"); // the alternatives
+  const longer = h("p", { class: "buttons" }, h("button", { type: "button", id: "longer", onclick: async () => {
+    if (await suitPeriods(app, () => results.closest(".columns"))) study.run.click();
+  } }, t("Choose records from 0.2 T₁ to the rocking period")));
+  const results = h("div", { class: "results", id: "record-set" }, drawing, beside);
   const study = new Study(app, "record_set", {
-    results, show, words: { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") }, example: () => null,
-    key: () => JSON.stringify([assumed(app.state, [label()]), recordsOf(app.state, choice().suites), choice().scale,
-      app.state.free_vibration, !(app.state.ground?.springs || app.state.ground?.bed) && app.state.limits.friction !== undefined]),
+    results, show, words: WORDS_OF_SET, example: () => null, key: () => keyOfSet(app),
   });
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
     entry("scale", t("Scale factor of all records"), { hint: "0.01–20" }), model, rule, study.element);
-  results.append(study.downloads([...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
+  results.append(study.downloads([...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ...reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")), ["figure", t("Figure (SVG)")], ["table", t("Peaks (CSV)")]],
     [["record_set-python", t("Python lines")]]));
+  const ofAll = reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")).map(([what]) => results.querySelector(`[data-file="${what}"]`));
   let view = null;
 
   function show(answer) {
     drawing.hidden = !answer.ready;
+    compared(answer);
     if (!answer.ready) return;
     view = answer;
     const now = shown.querySelector("select").value || "max_rotation";
     const names = view.demands.map((each) => each.name);
     shown.setOptions(view.demands.map((each) => [each.name, plain(each)]), names.includes(now) ? now : names[0]);
-    head.textContent = summary(view);
-    warned.replaceChildren(...view.warnings.map((text) => h("p", {}, text)));
+    const worst = worstCheck(view.checks);
+    head.replaceChildren(...(worst ? [h("b", { class: worst.fails ? "overturned" : null, id: "worst", "data-worst": worst.name }, `${worst.text}. `)] : []), summary(view));
+    warned.replaceChildren(...view.warnings.map((text) => h("p", {}, text)), ...(view.short ? [longer] : []));
     warned.hidden = !view.warnings.length;
     drawPeaks();
     drawRotations();
@@ -100,9 +116,10 @@ export function recordSet(app) {
     suites.refresh();
     model.setOptions(app.state.models.map((each) => [each, explained(each)]), label());
     rule.setValue(choice().rule);
+    for (const each of ofAll) each.hidden = !app.state.alternatives.length;
     study.refresh();
   }
-  return { form, results, refresh, close: (runs) => study.close(runs) };
+  return { form, results, beside, refresh, close: (runs) => study.close(runs) };
 }
 
 const plain = ({ symbol: text, unit: name }) => (name ? `${t(text)} [${name}]` : t(text));

@@ -77,11 +77,12 @@ export default function responseTab(app) {
     draw();
   });
   const saved = project(app);
+  const place = h("div", {}, kept.element); // of the alternatives, which move to the set and back
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
       h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
         "drag or press + and − to zoom; double-click or press Escape to reset."))),
-    h("h2", {}, t("Largest values")), peaks, floors, kept.element, elements.table, checks,
+    h("h2", {}, t("Largest values")), peaks, floors, place, elements.table, checks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, t("Moment and rotation")), loop.chart.element), elements.chart,
       energy.element));
   const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
@@ -186,19 +187,21 @@ export default function responseTab(app) {
     const { shown } = app.state.record_set;
     records.setValue(shown ? "set" : "");
     if (shown && !set) {
-      set = recordSet(app);
+      set = recordSet(app, kept.set);
       form.append(set.form);
       element.append(set.results);
     }
     for (const each of [player.element, scale, results]) each.hidden = shown;
     for (const each of set ? [form, set.results] : []) each.hidden = !shown;
     saved.refresh();
+    const beside = shown ? set.beside : place;
+    if (kept.element.parentElement !== beside) beside.append(kept.element);
+    kept.refresh();
     if (shown) {
       player.pause();
       set.refresh();
       return;
     }
-    kept.refresh();
     load();
   }
   globalThis.rockflexStage = {

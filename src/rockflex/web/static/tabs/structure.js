@@ -82,7 +82,7 @@ export default function structureTab(app) {
     app.change({});
   });
   const options = runs(app, () => null);
-  const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw());
+  const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw(), true);
   const saved = project(app);
   const facts = h("div");
   const more = folded("modes", t("Modes, masses, and which model to use"), facts);
@@ -225,7 +225,7 @@ export default function structureTab(app) {
     shown.resume();
     load();
   }
-  return { element, refresh, leave: () => shown.leave() };
+  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs) };
 }
 
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };

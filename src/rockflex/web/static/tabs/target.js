@@ -77,11 +77,13 @@ export function target(app, root) {
     h("div", { class: "buttons" },
       h("button", { type: "button", onclick: () => scale(parseNumber(period.value)) }, t("At this period")),
       h("button", { type: "button", onclick: () => scale(null) }, t("Over the range"))), scaled);
+  const [from, to] = [entry("shortest", t("Periods from"), { unit: "s" }), entry("longest", t("to"), { unit: "s" })];
+  const suit = () => suitPeriods(app, () => root());
   const form = h("div", { class: "side" },
     h("fieldset", { "data-path": "target" }, h("legend", {}, t("Target")), kind, Object.values(made), trouble()),
     h("fieldset", {}, h("legend", {}, t("Choice")), source,
       entry("count", t("Number of records"), { hint: t("1 to 60; of pairs, if these are combined") }),
-      entry("shortest", t("Periods from"), { unit: "s" }), entry("longest", t("to"), { unit: "s" }),
+      from, to, h("div", { class: "buttons" }, h("button", { type: "button", id: "periods", onclick: () => suit() }, t("From 0.2 T₁ to the rocking period"))),
       list("measure", t("Spectrum of a record"), MEASURES),
       entry("smallest", t("Scale factors from"), {}), entry("largest", t("to"), {}), more,
       h("p", { class: "error foot", role: "alert" })),
@@ -120,7 +122,7 @@ export function target(app, root) {
   let asked = "";
   const load = latest(async () => {
     const { record } = app.state;
-    const key = JSON.stringify([now(), record.folder, record.vertical]);
+    const key = JSON.stringify([now(), record.folder, record.vertical, app.state.structure]);
     if (key === asked && results.classList.contains("stale")) app.complain(root(), {}); // as it was before a bad value
     results.classList.toggle("stale", key !== asked);
     if (key === asked) return;
@@ -140,6 +142,8 @@ export function target(app, root) {
     source.setOptions(suitesOf(app, [], true), now().source);
     for (const [name, control] of Object.entries(made)) control.hidden = !OF[now().kind].includes(name);
     whole.hidden = now().source !== GIVEN;
+    from.setValue(now().shortest);
+    to.setValue(now().longest);
     load();
   }
   const files = downloads(app,
@@ -148,6 +152,13 @@ export function target(app, root) {
   const whole = files.querySelector('[data-file="records"]'); // which the program reads
   results.append(files);
   return { form, results, refresh };
+}
+
+// Choose records for the periods that matter: from a fifth of the first to that of rocking.
+export async function suitPeriods(app, root) {
+  const found = await app.ask("/api/periods", root());
+  if (found) app.change({ target: found });
+  return found;
 }
 
 const HEAD = [t("record"), t("earthquake"), "M", "R [km]", "V_s30 [m/s]", t("factor"), t("misfit"), t("S_a/target")];
@@ -186,6 +197,7 @@ class Spectra {
     ].map((each) => ({ x, ...each }));
     this.chart.set({
       spans: [[low, high]],
+      vlines: answer.first_period ? [{ x: answer.first_period, label: `T₁ = ${number(answer.first_period, 3)} s`, color: "muted" }] : [],
       series: [
         ...(answer.singles.length > 1 ? [{ kind: "band", x, low: inOwn(answer.low), high: inOwn(answer.high), color: "c0", alpha: 0.16 }] : []),
         ...answer.singles.map((y) => ({ x, y: inOwn(y), color: "muted", width: 0.8, alpha: 0.7 })),
