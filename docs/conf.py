@@ -21,6 +21,7 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
     "docstrings",
+    "drawings",
     "sphinxcontrib.katex",
     "figures",
     "signatures",
