@@ -24,6 +24,7 @@ extensions = [
     "drawings",
     "sphinxcontrib.katex",
     "figures",
+    "reference",
     "signatures",
 ]
 exclude_patterns = ["_build", "_extensions", "_templates", "joss", "gallery/*.py", "gallery/*.ipynb"]

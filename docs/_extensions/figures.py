@@ -4,6 +4,7 @@ import io
 from pathlib import Path
 from typing import Any
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image, ImageOps
 from sphinx.application import Sphinx
@@ -61,7 +62,8 @@ def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dic
 
 def panel(figure: Figure, place: int) -> Image.Image:
     """Return one panel of a figure, with its labels."""
-    box = figure.axes[place].get_tightbbox(figure.canvas.get_renderer()).transformed(figure.dpi_scale_trans.inverted())
+    box = figure.axes[place].get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+    box = box.transformed(figure.dpi_scale_trans.inverted())
     content = io.BytesIO()
     figure.savefig(content, dpi=150, bbox_inches=box.padded(0.05))
     return Image.open(content).convert("RGB")
