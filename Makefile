@@ -129,7 +129,7 @@ types: $(READY)  ## pyright (strict) on src
 
 docs: $(READY)  ## build the documentation in build/docs; warnings are errors
 	$(EDITABLE) '.[docs]'
-	rm -rf docs/gallery docs/api/generated docs/reproduced
+	rm -rf docs/gallery docs/api/generated docs/reproduced docs/_drawings
 	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 

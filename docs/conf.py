@@ -21,8 +21,10 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
     "docstrings",
+    "drawings",
     "sphinxcontrib.katex",
     "figures",
+    "reference",
     "signatures",
 ]
 exclude_patterns = ["_build", "_extensions", "_templates", "joss", "gallery/*.py", "gallery/*.ipynb"]

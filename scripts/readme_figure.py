@@ -1,11 +1,11 @@
-"""Draw the figure of the README: a frame on a fixed and on a rocking base."""
+"""Draw the figure of the README and the moving picture of the home page: a frame on a fixed and on a rocking base."""
 
 import math
 from pathlib import Path
 
 import rockflex as rf
 
-TARGET = Path(__file__).parents[1] / "docs" / "_static" / "rocking-and-fixed.png"
+FOLDER = Path(__file__).parents[1] / "docs" / "_static"
 
 
 def main() -> None:
@@ -27,7 +27,18 @@ def main() -> None:
         panels=("rotation", "base_moment"),
         title="Five-story frame under El Centro 1940 × 1.5",
     )
-    print(f"written to {rf.save_figure(figure, TARGET)}")
+    print(f"written to {rf.save_figure(figure, FOLDER / 'rocking-and-fixed.png')}")
+    moving = rf.animate(
+        responses,
+        FOLDER / "rocking.gif",
+        labels=["base held down", "base that rocks"],
+        panels=["base_moment", "ground_acceleration"],
+        start=1.0,
+        stop=9.0,
+        frames_per_second=10,
+        width=600,
+    )
+    print(f"written to {moving}, {moving.stat().st_size / 1e3:.0f} kB")
 
 
 if __name__ == "__main__":

@@ -1,30 +1,37 @@
-"""Figures of the gallery's scripts: every matplotlib figure that a block assigns to a variable."""
+"""Figures of the gallery's scripts: every matplotlib figure that a block assigns to a variable, and the thumbnails."""
 
+import io
+from pathlib import Path
 from typing import Any
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from PIL import Image, ImageOps
 from sphinx.application import Sphinx
 from sphinx_gallery.scrapers import figure_rst
+
+# Scripts in the order of the gallery, each with the figure and the panel of it that answers its title.
+SCRIPTS = {
+    "first_run": ("moved", 0),
+    "records_for_a_target": ("spectra", 0),
+    "models_compared": ("history", 3),
+    "uplift_and_modes": ("ratios", 0),
+    "shenton_map": ("figure", 0),
+    "chimney": ("history", 4),
+    "restrained_pier": ("history", 0),
+    "controlled_rocking": ("flag", 0),
+    "hybrid_wall": ("flag", 0),
+    "nine_story_frame": ("profiles", 0),
+    "pier_on_soil": ("soil", 0),
+    "fragility_of_a_frame": ("curves", 0),
+    "ida_with_resurrections": ("curves", 0),
+}
+SIZE = 400, 280  # pixels of a thumbnail
+PANELS: dict[str, Image.Image] = {}
 
 
 class Order:
     """Order of the gallery: from a first run to studies."""
-
-    SCRIPTS = (
-        "first_run",
-        "records_for_a_target",
-        "models_compared",
-        "uplift_and_modes",
-        "shenton_map",
-        "chimney",
-        "restrained_pier",
-        "controlled_rocking",
-        "hybrid_wall",
-        "nine_story_frame",
-        "pier_on_soil",
-        "fragility_of_a_frame",
-        "ida_with_resurrections",
-    )
 
     def __init__(self, folder: str) -> None:
         self.folder = folder
@@ -32,7 +39,7 @@ class Order:
     def __call__(self, script: str) -> tuple[int, str]:
         """Position of a script; unlisted ones come last, by name."""
         stem = script.removesuffix(".py")
-        return self.SCRIPTS.index(stem) if stem in self.SCRIPTS else len(self.SCRIPTS), stem
+        return list(SCRIPTS).index(stem) if stem in SCRIPTS else len(SCRIPTS), stem
 
 
 def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
@@ -40,17 +47,36 @@ def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dic
     del block
     names = block_vars["example_globals"]
     shown = names.setdefault("__figures_shown__", [])
+    stem = Path(block_vars["src_file"]).stem
     paths = []
-    for figure in [value for value in names.values() if isinstance(value, Figure)]:
+    for name, figure in [(name, value) for name, value in names.items() if isinstance(value, Figure)]:
         if not any(figure is other for other in shown):
             shown.append(figure)
             path = next(block_vars["image_path_iterator"])
             figure.savefig(path, dpi=150, bbox_inches="tight")
             paths.append(path)
+            if stem in SCRIPTS and SCRIPTS[stem][0] == name:
+                PANELS[stem] = panel(figure, SCRIPTS[stem][1])
     return figure_rst(paths, gallery_conf["src_dir"])
 
 
+def panel(figure: Figure, place: int) -> Image.Image:
+    """Return one panel of a figure, with its labels."""
+    box = figure.axes[place].get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+    box = box.transformed(figure.dpi_scale_trans.inverted())
+    content = io.BytesIO()
+    figure.savefig(content, dpi=150, bbox_inches=box.padded(0.05))
+    return Image.open(content).convert("RGB")
+
+
+def write_thumbnails(app: Sphinx) -> None:
+    """Put the panels in the place of the thumbnails, which show whole figures."""
+    for stem, image in PANELS.items():
+        target = Path(app.srcdir) / "gallery" / "images" / "thumb" / f"sphx_glr_{stem}_thumb.png"
+        ImageOps.pad(image, SIZE, color="white").save(target)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Nothing to register: the configuration names `scrape`."""
-    del app
+    """Write the thumbnails after the gallery, which is made when the builder is; the configuration names `scrape`."""
+    app.connect("builder-inited", write_thumbnails, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

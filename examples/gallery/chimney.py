@@ -17,7 +17,8 @@ tower = rf.TaperedTower(
     elastic_modulus=25e9,
     damping_ratio=0.02,
 )
-drawing = rf.plot_tower(tower)
+drawing = rf.plot_structure(tower)
+section = rf.plot_tower(tower)
 
 # %%
 motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)

@@ -23,6 +23,9 @@ fuses = [
     rf.YieldingDissipator(stiffness=400e6, yield_force=0.9e6, post_yield_ratio=0.02, position=x) for x in (-0.8, 0.8)
 ]
 hybrid = rf.Restrained(wall, [tendon, *fuses])
+drawing = rf.plot_structure(hybrid)
+
+# %%
 curve = rf.moment_rotation(hybrid, [0.005, -0.005, 0.01, -0.01, 0.02, -0.02, 0.03, -0.03, 0.0])
 flag = rf.plot_loops(curve)
 print(f"re-centring ratio {hybrid.rocking().recentring_ratio:.2f}")

@@ -19,6 +19,9 @@ frame = rf.Frame(
     aspect_ratio=10.0,
     damping_ratio=0.02,
 )
+drawing = rf.plot_structure(frame)
+
+# %%
 motion = rf.load_suite("el-centro-1940")[0].scaled(1.5)
 response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
 print(response)
@@ -26,6 +29,10 @@ print(response)
 # %%
 # The base is uplifted in the shaded intervals. While it rocks, its moment is nearly constant: that limits the forces.
 history = rf.plot_history(response)
+
+# %%
+# At the largest rotation it stands on one edge.
+moved = rf.plot_structure(frame, response=response)
 
 # %%
 # The energy balance: where the input energy goes.

@@ -20,6 +20,9 @@ frame = rf.Frame(
     aspect_ratio=10.0,
     damping_ratio=0.02,
 )
+drawing = rf.plot_structure(frame)
+
+# %%
 suite = rf.load_suite("fema-p695-far-field")
 runs = rf.run_cloud({"#1": frame}, suite, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0, 2.0, 4.0), free_vibration="settle")
 curves = rf.plot_fragility(runs, confidence=0.9, overturning=True)

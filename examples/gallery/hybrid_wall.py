@@ -53,6 +53,7 @@ walls = {
     name: rf.Restrained(rf.Beam(**WALL), [rf.Tendon(**first), *(rf.YieldingDissipator(**each) for each in rest)])
     for name, (first, *rest) in DESIGNS.items()
 }
+drawing = rf.plot_structure(walls["18 strands, 24 bars"])
 for name, wall in walls.items():
     p = wall.rocking()
     closes = "closes by itself" if p.self_centring else "does not close by itself"

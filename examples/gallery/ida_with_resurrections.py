@@ -20,6 +20,9 @@ frame = rf.Frame(
     aspect_ratio=10.0,
     damping_ratio=0.02,
 )
+drawing = rf.plot_structure(frame)
+
+# %%
 suite = rf.load_suite("fema-p695-far-field")
 runs = rf.run_incremental({"#1": frame}, suite[:16], "2DOF-S", smallest_scale=0.5, largest_scale=20.0, growth=1.1)
 curves = rf.plot_ida(runs, measure="pgv")

@@ -51,6 +51,7 @@ frame = rf.Restrained(
         for element in (rf.Tendon(**TENDON, position=x), rf.YieldingDissipator(**FUSE, position=x))
     ],
 )
+drawing = rf.plot_structure(frame)
 p = frame.rocking()
 print("periods on a fixed base", frame.modal(3).period.round(2), "s")
 print("shares of the mass", (p.effective_mass / p.effective_mass.sum()).round(2)[:3])

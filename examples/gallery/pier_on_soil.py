@@ -24,6 +24,7 @@ p = pier.rocking()
 weight = p.m_tot * 9.81
 bed = rf.winkler_bed(half_width=2.0, breadth=6.0, subgrade_modulus=80e6, n=16).damped(0.3, p.m_tot)
 footing = 200e3 * 4.0**2 / 12.0  # kg m²: rotary inertia of a rigid mat
+drawing = rf.plot_structure(pier, rf.Ground(friction=0.25, springs=bed, base_inertia=footing))
 print(f"The pier settles by {1e3 * weight / bed.total_stiffness:.1f} mm under {weight / 1e6:.1f} MN,")
 print(f"a mean pressure of {weight / 24.0 / 1e3:.0f} kPa under its footing of 4 m by 6 m.")
 print(f"Slowly pushed, it lifts at a ground acceleration of {p.resisting_moment / p.l0r:.2f} m/s² on rigid ground.")

@@ -19,6 +19,9 @@ pier = rf.CantileverWithTipMass(
     n_modes=3,
 )
 held = rf.Restrained(pier, rf.Tendon(initial_force=2.0e6, stiffness=25e6, yield_force=4.2e6))
+drawing = rf.plot_structure(held)
+
+# %%
 motion = rf.load_suite("fema-p695-far-field")["FF-2-a"]
 responses = [rf.simulate(structure, motion, "MDOF-S", free_vibration=5.0) for structure in (pier, held)]
 history = rf.plot_history(responses, labels=("free", "with tendon"), title=motion.name)

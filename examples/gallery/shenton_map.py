@@ -22,6 +22,7 @@ MODES = ("rest", "slide", "rock", "slide-rock")
 GRAVITY = 9.81
 SLENDERNESS = 2.0  # γ = H/B, height over width
 block = rf.rigid_block(slenderness=math.atan(1.0 / SLENDERNESS), half_diagonal=1.5)
+drawing = rf.plot_structure(block, rf.Ground(friction=0.4))
 
 
 frictions = np.arange(0.01, 1.2, 0.02)

@@ -28,6 +28,9 @@ def building(stiffness_ratio: float) -> rf.Frame:
 
 
 frames = {"shear": building(math.inf), "flexure": building(0.0)}
+drawing = rf.plot_structure(frames["shear"])
+
+# %%
 aspect_ratios = np.geomspace(0.1, 1000.0, 101)
 tables = {name: rf.frequency_ratios(frame, aspect_ratios) for name, frame in frames.items()}
 ratios = rf.plot_frequency_ratios(tables, {name: rf.pinned_beam(name) for name in frames}, mark=10.0)

@@ -159,6 +159,28 @@ def test_a_script_of_the_gallery_has_its_heading(script):
     assert len(rule) >= len(heading)
 
 
+def test_the_table_of_the_gallery_says_what_its_scripts_have():
+    words = {
+        "tendons": r'rf\.Tendon|"tendon"',
+        "fuses": r"YieldingDissipator|bar_fuse",
+        "springs": r"Springs|_bed\(",
+        "complete models": r'DOF-C"|rigid-C',
+        "fragility": r"plot_fragility|plot_stripes|fit_capacities|fit_clouds",
+    }
+    folder = ROOT / "examples" / "gallery"
+    table = (folder / "README.rst").read_text("utf-8")
+    rows = [re.findall(r"- ?(.*)", row) for row in table.partition("   * - ")[2].split("\n   * ")]
+    assert [cell.strip() for cell in rows[0]] == list(words)
+    found = {
+        row[0].strip().removeprefix(":doc:").strip("`"): [bool(cell.strip()) for cell in row[1:]] for row in rows[1:]
+    }
+    for script in folder.glob("*.py"):
+        text = script.read_text("utf-8")
+        assert found[script.stem] == [bool(re.search(each, text)) for each in words.values()], script.stem
+        if script.stem != "records_for_a_target":
+            assert text.index("drawing = rf.plot_structure(") < text.find("rf.plot_history") % len(text)
+
+
 @pytest.mark.parametrize(
     ("text", "languages", "outputs"),
     [

@@ -281,6 +281,13 @@ def test_what_the_ground_must_hold_is_a_panel_of_its_own(four):
     np.testing.assert_allclose(curve(axes, 0).get_ydata(), four[2].horizontal_reaction / 1e3, rtol=1e-14)
 
 
+def test_the_accelerogram_is_a_panel_that_is_asked_for(four):
+    (axes,) = plot_history(four[2], panels=["ground_acceleration"]).axes
+    np.testing.assert_allclose(curve(axes, 0).get_ydata(), four[2].ground_acceleration, rtol=1e-14)
+    peak = int(np.abs(four[2].ground_acceleration).argmax())
+    assert any(f"at {four[2].time[peak]:.2f} s" in text.get_text() for text in axes.texts)
+
+
 def test_without_a_known_height_there_is_no_panel_of_the_total_displacement():
     p = FRAME.rocking(1)
     names = ("omega", "effective_mass", "effective_height", "top_ordinate", "i_theta", "l0r", "m_tot", "half_width")

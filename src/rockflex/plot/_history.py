@@ -28,7 +28,12 @@ from rockflex.structure._rocking import RockingProperties
 _MARGIN = 1.12
 _BAR = 0.025  # height of an uplift bar as a share of the panel
 _POINTS = 2000  # across the panel, more than it has dots
-_OPTIONAL = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
+_OPTIONAL = (
+    "horizontal_reaction",
+    "slip",
+    "edge_uplift",
+    "ground_acceleration",
+)  # or shown where the ground makes them matter
 BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
 MAX_LINES = 4  # springs whose forces are drawn as lines; more springs as a map
 _SPRING_COLORS = (BLUE, RED, BLACK, GRAY)
@@ -219,12 +224,14 @@ class PanelQuantity:
 
     def peak(self, curve: "ResponseCurve") -> float:
         """Largest magnitude of a response, also between the nodes of its history."""
+        if self.name == "ground_acceleration":
+            return float(np.abs(curve.history.ground_acceleration).max())
         return float(getattr(curve.response, f"max_{self.name}"))
 
 
 PANELS = (
     "rotation", "top_displacement", "total_top_displacement", "base_moment", "base_shear", "horizontal_reaction",
-    "slip", "edge_uplift",
+    "slip", "edge_uplift", "ground_acceleration",
 )  # fmt: skip
 
 
@@ -328,7 +335,7 @@ def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor
     time, values = curve.history.time, quantity.of(curve.history)
     if quantity.name == "edge_uplift":
         when, side = float(time[values.max(axis=1).argmax()]), 1.0
-    elif quantity.name == "slip":
+    elif quantity.name in ("slip", "ground_acceleration"):
         node = int(np.abs(values).argmax())
         when, side = float(time[node]), float(np.sign(values[node]))
     else:
@@ -384,9 +391,10 @@ def plot_history(
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     panels
         Which of ``"rotation"``, ``"top_displacement"``, ``"total_top_displacement"``, ``"base_moment"``,
-        ``"base_shear"``, ``"horizontal_reaction"``, ``"slip"`` and ``"edge_uplift"`` (of the left edge, and thinner of
-        the right one), from the top. Default: all but the last three; without the total displacement if the height of
-        the top is not known, and with the slip if a base can slide and the edges if one is on springs.
+        ``"base_shear"``, ``"horizontal_reaction"``, ``"slip"``, ``"edge_uplift"`` (of the left edge, and thinner of
+        the right one) and ``"ground_acceleration"``, from the top. Default: all but the last four; without the total
+        displacement if the height of the top is not known, and with the slip if a base can slide and the edges if one
+        is on springs.
     detail
         First and last time in s of a second column of panels, which shows this part alone. Default: none.
     lines
