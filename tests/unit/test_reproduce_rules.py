@@ -191,10 +191,10 @@ def test_the_strength_of_the_records_decides_where_weaker_ones_do_not_miss(inter
 
 def test_a_reading_that_records_do_not_meet_is_the_authors_judgement():
     ours = ResampledInterval(0.4, 0.3, 0.5)
-    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", missed=Verdict.JUDGEMENT, weaker=ours)
-    assert line.verdict is Verdict.JUDGEMENT
+    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", reading=True, weaker=ours, note="#2")
+    assert (line.verdict, line.note) == (Verdict.JUDGEMENT, "0.1 is our reading; #2")
     near = ResampledInterval(0.1, 0.05, 0.5)
-    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", missed=Verdict.JUDGEMENT, weaker=near)
+    line = compare.tendency("gap", "Section 3.2", "agree well", ours, "< 0.1", reading=True, weaker=near)
     assert line.verdict is Verdict.UNDECIDED
 
 

@@ -27,7 +27,9 @@ from rockflex.papers.silva_stojadinovic_2024._section_3_3 import (
     COUNTS,
     intervals_of_measures,
     population_intervals,
+    population_pieces,
     population_pool,
+    sampled_pieces,
 )
 from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce_targets
 
@@ -290,6 +292,42 @@ def test_fig_6_is_judged_where_the_difference_is_largest_in_rad(results):
     assert (first.note, second.note) == ("#3, 2DOF-S", "#3, 2DOF-S")
     assert first.ours == pytest.approx(0.00205, abs=3e-5)
     assert second.ours == pytest.approx(12.0, abs=0.2)
+
+
+def test_sampled_base_shears_are_below_the_true_peaks_of_the_same_pairs(records, results):
+    pairs = population_pieces(records)[records.seeds].table(records).set_index("pair")
+    sampled = sampled_pieces(records)[-1].table(records).set_index("pair")
+    rocking = pairs[(pairs["status_mdof"] == "rocking") & (pairs["status_2dof"] != "overturned")]
+    assert list(sampled.index) == list(rocking.index)
+    for model in ("mdof", "2dof"):
+        share = sampled[model] * rocking["structure_mass"] * 9.81 / rocking[f"max_base_shear_{model}"]
+        assert 0.5 < share.min() < 0.999
+        assert share.max() <= 1.0 + 1e-9
+    *_, remark = (compute() for compute in results["figure-13"].remarking)
+    assert [row[:2] for row in remark.rows] == [("R² of V_b,max, SRSS", "0.55"), ("R² of V_b,max, 2DOF-S", "0.41")]
+    told = rf.population_statistics(pairs.reset_index(), n_resamples=20).combination
+    true = told[told["quantity"] == "base_shear"].set_index("estimate")["r2"]
+    assert [float(row[2].replace("−", "-")) for row in remark.rows] == pytest.approx(true[["SRSS", "2DOF-S"]], abs=6e-3)
+
+
+def test_the_ten_other_values_agree_at_samples_too(results):
+    remark, *_ = (compute() for compute in results["figure-15"].remarking)
+    assert len(remark.rows) == 11
+    for _, printed, at_samples, _ in remark.rows:
+        found = Decimal(at_samples.removesuffix(" %").replace("−", "-"))
+        if printed[0] == "≤":
+            assert holds(printed, found)
+            continue
+        value, step = digits(printed.removesuffix(" %"))
+        assert abs(abs(found) - abs(value)) <= step / 2
+
+
+def test_fig_16_with_the_top_displacement_of_fig_17(results):
+    (remark,) = (compute() for compute in results["figure-16"].remarking)
+    rows = {row[0]: row for row in remark.rows}
+    ratio, ductility = ({value: float(row[place].split()[0]) for value, row in rows.items()} for place in (4, 5))
+    assert [round(ratio[value], 2) for value in ("0.040", "0.042")] == [1.08, 1.02]
+    assert [ductility[value] for value in ("0.040", "0.042")] == [1.17, 1.06]
 
 
 def test_draws_of_a_population_spread_as_populations_do(records):

@@ -76,7 +76,7 @@ class Verdict(_ExplainedName):
     NOT_GIVEN = (
         "parameter not given",
         "Follows from a parameter that the paper chose and does not give. Ours is for a value that we assume, which "
-        "makes it agree or not; so neither is counted.",
+        "makes it agree or not; so neither counts for or against the paper.",
     )
     JUDGEMENT = (
         "authors' judgement",
@@ -271,11 +271,14 @@ def judgement(
     note: str = "",
 ) -> PublishedNumber:
     """Check a statement of degree by a bound that is our reading of it, as the line says."""
+    reading = _with_reading(note, criterion, unit)
+    return statement(name, place, printed, ours, criterion, unit, agreed=agreed, missed=Verdict.JUDGEMENT, note=reading)
+
+
+def _with_reading(note: str, criterion: str, unit: str) -> str:
+    """Begin a note with whose limit the criterion is."""
     reading = f"{criterion.lstrip('<>≤≥ ')}{f' {unit}' if unit else ''} is our reading"
-    return statement(
-        name, place, printed, ours, criterion, unit, agreed=agreed, missed=Verdict.JUDGEMENT,
-        note="; ".join(part for part in (reading, note) if part),
-    )  # fmt: skip
+    return f"{reading}; {note}" if note else reading
 
 
 def assumed(line: PublishedNumber, parameter: str) -> PublishedNumber:
@@ -366,20 +369,21 @@ def tendency(
     criterion: str,
     unit: str = "",
     *,
-    missed: Verdict = Verdict.NOT,
+    reading: bool = False,
     weaker: ResampledInterval | None = None,
     note: str = "",
 ) -> PublishedNumber:
     """Check a bound or a statement in words on the interval of a number from other records, and from weaker ones.
 
-    `missed` is the verdict if the bound holds nowhere on either interval.
+    The bound may be our `reading` of words of degree, as in `judgement`.
     """
     wanted, value = printed_range(criterion), float(ours.estimate)
     digits, verdict = _digits_beside_bound(wanted, value), _verdict_over(wanted, ours)
     text = f"{criterion} over the 90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
     if verdict is Verdict.NOT and weaker is not None and _verdict_over(wanted, weaker) is not Verdict.NOT:
         verdict, text = Verdict.UNDECIDED, f"{text}; {_weaker_in_words(wanted, weaker)}"
-    verdict = missed if verdict is Verdict.NOT else verdict
+    if reading:
+        note, verdict = _with_reading(note, criterion, unit), Verdict.JUDGEMENT if verdict is Verdict.NOT else verdict
     return PublishedNumber(name, place, printed, value, unit, text, digits, note, verdict, None, None)
 
 

@@ -194,6 +194,7 @@ def _numbers_of_ritz_modes() -> list[PublishedNumber]:
     return [
         compare.number(
             f"{name}_{n}", f"Table 3, mode {n}", printed, ours[name][n - 1], unit, truncated=True,
+            note="met by sums over thin slices: see the remark" if (name, n) == ("h*", 2) else "",
         )
         for n in range(1, 6)
         for name, (row, unit) in RITZ.items()
@@ -201,17 +202,18 @@ def _numbers_of_ritz_modes() -> list[PublishedNumber]:
     ]  # fmt: skip
 
 
+MIXED = "met by modes that are mixed a little: see the remark"
 FINITE_ELEMENTS = {
-    "m*_1": ("8.485", "10⁶ kg", ""),
-    "h*_1": ("141.66", "m", ""),
+    "m*_1": ("8.485", "10⁶ kg", MIXED),
+    "h*_1": ("141.66", "m", MIXED),
     "ω_1": ("1.678", "rad/s", "Table 3 has 1.66 by Ritz, from above: so many finite elements cannot give more"),
     "Γ_1": ("1.725", "", ""),
     "m*_1/m_tot": ("0.51", "", ""),
     "m*_1 h*_1/L_0^r": ("0.82", "", ""),
-    "m*_2": ("3.233", "10⁶ kg", ""),
-    "h*_2": ("50.02", "m", "Table 3 has 51.33 by Ritz"),
+    "m*_2": ("3.233", "10⁶ kg", MIXED),
+    "h*_2": ("50.02", "m", f"Table 3 has 51.33 by Ritz; {MIXED}"),
     "ω_2": ("7.75", "rad/s", ""),
-    "Γ_2": ("−1.179", "", ""),
+    "Γ_2": ("−1.179", "", MIXED),
     "(m*_1 + m*_2)/m_tot": ("0.71", "", ""),
     "(m*_1 h*_1 + m*_2 h*_2)/L_0^r": ("0.94", "", ""),
 }
@@ -344,6 +346,8 @@ def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[PublishedNumber]
     for model, quantity, printed in ERRORS:
         found, signed = error(model, quantity), quantity == "base_moment"
         note = "" if signed else f"ours is {_signed_percent(found, 2)}"
+        if (model, quantity) == ("3DOF-S", "rotation"):
+            note += "; met by peaks at the samples of the record: see the remark"
         name = f"{SYMBOLS[quantity]}, error of {model}"
         lines.append(compare.number(name, CHIMNEY, printed, found if signed else abs(found), "%", note=note))
     further = abs(error("4DOF-S", "base_shear")) / abs(error("3DOF-S", "base_shear"))
