@@ -84,7 +84,6 @@ cdef extern from "march.h" nogil:
     ctypedef struct Shape:
         int n, outputs, rows, shift, parts
         double h
-    ctypedef void (*Eigen)(char *left, char *right, int *n, double *A, int *w, double *real, double *imaginary, double *lefts, int *wl, double *rights, int *wr, double *room, int *size, int *wrong) noexcept nogil
     ctypedef struct Loops:
         const char *level
         int group
@@ -104,7 +103,7 @@ cdef extern from "march.h" nogil:
         void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series) noexcept nogil
         size_t (*room)(const Shape *s) noexcept nogil
         double (*turn)(const Shape *s, const double *rates, double *memory) noexcept nogil
-        int (*fast_modes)(const Shape *s, const double *rates, Eigen solve, double *memory, double *modes) noexcept nogil
+        int (*fast_modes)(const Shape *s, const double *roots, const double *vectors, double *memory, double *modes) noexcept nogil
         int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory, const Py_ssize_t *places, double *to) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 

@@ -4,7 +4,6 @@ import os
 
 import cython
 import numpy as np
-from cython.cimports.cpython.pycapsule import PyCapsule_GetName, PyCapsule_GetPointer
 from cython.cimports.libc.math import INFINITY
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
@@ -596,8 +595,7 @@ def prepared(
     n: cython.int = shape.n
     k: cython.int
     most: cython.int = 0
-    fast: cython.bint = False
-    solve: Eigen
+    place: cython.Py_ssize_t
     given: cython.p_const_double = cython.address(rates[0, 0, 0])
     seen: cython.p_const_double = cython.address(rows[0, 0, 0]) if rows.shape[1] else given
     wide: cython.Py_ssize_t = n * (n + 2)
@@ -606,22 +604,31 @@ def prepared(
     shape.parts = n
     memory: cython.double[::1] = np.empty(LOOPS.room(shape))
     room: cython.p_double = cython.address(memory[0])
+    turns: cython.double[::1] = np.empty(systems)
     counts: cython.int[::1] = np.zeros(systems, dtype=np.intc)
     modes: cython.double[::1] = memory
     for k in range(systems):
-        if LOOPS.turn(shape, given + k * wide, room) > FAST:
-            counts[k], fast = 1, True
-    if fast:
-        solver = eigen_solver()
-        solve = cython.cast(Eigen, PyCapsule_GetPointer(solver, PyCapsule_GetName(solver)))
+        turns[k] = LOOPS.turn(shape, given + k * wide, room)
+    chosen = np.flatnonzero(np.asarray(turns) > FAST)
+    if chosen.size:
+        all_roots, columns = np.linalg.eig(np.asarray(rates)[chosen, :, :n])
+        roots: cython.double[:, ::1] = np.concatenate((all_roots.real, all_roots.imag), axis=1)
+        vectors: cython.double[:, :, ::1] = np.ascontiguousarray(
+            np.where(all_roots.imag[:, None] < 0.0, -columns.imag, columns.real)
+        )
+        places_of: cython.Py_ssize_t[::1] = chosen
         modes = np.empty(systems * of_modes)
         with cython.nogil:
-            for k in range(systems):
-                if counts[k] > 0:
-                    counts[k] = LOOPS.fast_modes(
-                        shape, given + k * wide, solve, room, cython.address(modes[k * of_modes])
-                    )
-                most = max(most, counts[k])
+            for k in range(places_of.shape[0]):
+                place = places_of[k]
+                counts[place] = LOOPS.fast_modes(
+                    shape,
+                    cython.address(roots[k, 0]),
+                    cython.address(vectors[k, 0, 0]),
+                    room,
+                    cython.address(modes[place * of_modes]),
+                )
+                most = max(most, counts[place])
         shape.parts += 2 * most
         memory = np.empty(LOOPS.room(shape))
         room = cython.address(memory[0])
@@ -638,7 +645,7 @@ def prepared(
                 given + k * wide,
                 seen + k * tall,
                 counts[k],
-                cython.address(modes[k * of_modes if fast else 0]),
+                cython.address(modes[k * of_modes if most else 0]),
                 room,
                 cython.address(places[0]),
                 cython.address(tables[k, 0]),
@@ -668,10 +675,3 @@ def sizes_of(shape: cython.pointer(Shape)):
         now,
         up8(m) * (n + 2),
     ]
-
-
-def eigen_solver():
-    """That of LAPACK, which comes with SciPy."""
-    from scipy.linalg import cython_lapack
-
-    return cython_lapack.__pyx_capi__["dgeev"]

@@ -404,7 +404,8 @@ static int may_fail(const Tables *p, const double *ground, const double *rise, i
    known where a_v acts, as `rise`. */
 static Asking asking(const Tables *p, const double *ground, const double *rise, const double *x, const double *before,
                      const double *after, Block *b, const Watch *w, Bounds *bounds) {
-    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows), parted = !rise && p->parts > p->n;
+    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
+    const int parted = !b->shakes && p->parts > p->n; /* otherwise the amplitudes of fast modes are not known */
     double *slopes = bounds->slopes, *centres = bounds->centres, *sway = bounds->sway;
     const double *ends = rise ? bounds->ends : slopes + rows;
     Asking found = {0};

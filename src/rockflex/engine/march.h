@@ -116,10 +116,6 @@ typedef struct { /* a phase of which tables are to be made; of `Tables`, and the
     double h;
 } Shape;
 
-/* dgeev of LAPACK: roots and vectors of a matrix. */
-typedef void (*Eigen)(char *left, char *right, int *n, double *A, int *w, double *real, double *imaginary, double *lefts,
-                      int *wl, double *rights, int *wr, double *room, int *size, int *wrong);
-
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
@@ -140,7 +136,7 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series);
     size_t (*room)(const Shape *s); /* doubles */
     double (*turn)(const Shape *s, const double *rates, double *memory);
-    int (*fast_modes)(const Shape *s, const double *rates, Eigen solve, double *memory, double *modes);
+    int (*fast_modes)(const Shape *s, const double *roots, const double *vectors, double *memory, double *modes);
     int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
                    const ptrdiff_t *places, double *to);
 } Loops;

@@ -145,19 +145,15 @@ static double turn(const Shape *s, const double *rates, double *memory) {
 }
 
 /* The modes that turn by more than FAST in a step: roots, columns V and rows W of each, real and imaginary parts apart, in
-   `modes`. Returns their number; 0 if they cannot be parted from the others. */
-static int fast_modes(const Shape *s, const double *rates, Eigen solve, double *memory, double *modes) {
-    Room r = room_for(s, memory);
-    int n = s->n, w = r.w, size = 4 * r.w, wrong, count = 0, one = 1;
-    memset(memory, 0, sizeof *memory * r.size);
-    double *A = r.found, *V = r.here, *real = r.most, *imaginary = r.most + n, *inverse = r.after;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) A[j * n + i] = rates[i * (n + 2) + j];
-    char no[] = "N", yes[] = "V";
-    solve(no, yes, &n, A, &n, real, imaginary, 0, &one, V, &n, r.rows, &size, &wrong);
-    if (wrong) return 0;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) inverse[i * w + j] = V[j * n + i];
+   `modes`. Given are all roots, real parts and then imaginary ones, and all vectors, the real and the imaginary part in place
+   of two that are conjugate. Returns their number; 0 if they cannot be parted from the others. */
+static int fast_modes(const Shape *s, const double *roots, const double *vectors, double *memory, double *modes) {
+    const Room r = room_for(s, memory);
+    const int n = s->n, w = r.w;
+    const double *real = roots, *imaginary = roots + n;
+    double *inverse = r.after;
+    int count = 0;
+    set_rows(n, n, w, vectors, inverse);
     if (!invert(n, w, inverse)) return 0;
     for (int k = 0; k < n; k++) {
         if (imaginary[k] < 0.0 || !(hypot(real[k], imaginary[k]) * s->h > FAST)) continue;
@@ -165,7 +161,7 @@ static int fast_modes(const Shape *s, const double *rates, Eigen solve, double *
         double *mode = modes + (size_t)count++ * (2 + 4 * n), sum = 0.0;
         mode[0] = real[k], mode[1] = imaginary[k], mode += 2;
         for (int i = 0; i < n; i++) {
-            mode[i] = V[k * n + i], mode[n + i] = pair ? V[(k + 1) * n + i] : 0.0;
+            mode[i] = vectors[i * n + k], mode[n + i] = pair ? vectors[i * n + k + 1] : 0.0;
             mode[2 * n + i] = inverse[k * w + i] * (pair ? 0.5 : 1.0);
             mode[3 * n + i] = pair ? -0.5 * inverse[(k + 1) * w + i] : 0.0;
             sum += hypot(mode[i], mode[n + i]) * hypot(mode[2 * n + i], mode[3 * n + i]);
@@ -255,7 +251,8 @@ static void part(const Shape *s, const Room *r, int count, const double *modes, 
                 row[n + 2 + k] = row[n + 2 + count + k] = most[q];
             }
             r->sway[j * w + n + 1] += most[1] / root * push;
-            const double x = both * (seen[0] * re + seen[1] * im) / (root * root), z = both * (seen[1] * re - seen[0] * im) / (root * root);
+            const double share = both / (root * root);
+            const double x = share * (seen[0] * re + seen[1] * im), z = share * (seen[1] * re - seen[0] * im);
             for (int i = 0; i < n; i++) swing[j * w + i] += x * u[i] - z * ui[i];
         }
     }

@@ -14,7 +14,6 @@ import numpy as np
 
 from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
 from rockflex.engine.tables import (
-    FAST,
     FINEST,
     VAGUE,
     by_rows,
@@ -34,6 +33,7 @@ NODES = 8, 16  # of the polynomials: the second number where the first is not ex
 FINE = 24  # nodes for the integrals themselves
 TERMS = 40  # of power series over a part of a step in which no mode turns by more than `LONGEST`
 LONGEST = 2.5
+MARCHED = 12.0  # rad that a mode turns within a step, up to which the nodes may be exact, and bounds of use
 USUAL = 30.0  # a vertical acceleration for which the first number of nodes must do, in the user's unit: as in m/s²
 EXACT = 1e-14  # of what p adds in a sample, or of the change of the state: an error that is rounding
 CONTRACTS = 0.05  # by how much each turn of the fixed point must contract at least
@@ -120,7 +120,7 @@ def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, parts: int) -> Shak
     moves = np.zeros((S, parts, columns))
     moves[:, :n] = rates
     fast, marches = spectral_radius_bound(phase.A * h), fed <= MAX_FED
-    pieces = np.where((fast <= FAST) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
+    pieces = np.where((fast <= MARCHED) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
     turns = halvings_of(fast, 1.0)
     step = np.concatenate([steps_of(rates[k : k + 1, :, : n + 2], h, int(turns[k])) for k in range(S)])
     found = marched_of(terms, h, step, pieces)

@@ -8,6 +8,7 @@ from functools import cached_property
 from inspect import Parameter, signature
 from math import isfinite
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -279,7 +280,8 @@ class System:
     outputs : sequence of str
         Names of the m outputs, in the order of the rows of every phase.
     phase : callable
-        Returns the `LinearPhase` or `NonlinearPhase` of a key; called once for each that a run meets.
+        Returns the `LinearPhase` or `NonlinearPhase` of a key; called once for each that a run meets, and not for a
+        linear one that another run of the system holds, as for another time step.
     start : hashable
         Key of the first phase.
     one_sided : sequence of str
@@ -294,6 +296,9 @@ class System:
     start: Key
     one_sided: Sequence[str] = initially(default=())
     count: int = 1
+    _held: "WeakValueDictionary[Key, LinearPhase]" = initially(
+        init=False, default_factory=WeakValueDictionary, repr=False
+    )
 
     def __post_init__(self) -> None:
         if not 0 < self.layout.size <= MAX_STATES:
@@ -313,7 +318,9 @@ class System:
             If there is no such phase, or an array has the wrong shape, or holds NaN or infinity; it names the key and
             the output or event.
         """
-        found: Any
+        found: Any = self._held.get(key)
+        if found is not None:
+            return found
         try:
             found = self.phase(key)
         except LookupError as error:
@@ -347,7 +354,10 @@ class System:
         events = _checked_events(place, found.events, n, self.count)
         if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
-        return replace(found, events=events, **arrays)
+        phase = replace(found, events=events, **arrays)
+        if isinstance(phase, LinearPhase) and not any(isinstance(event.jump, Jump) for event in events):
+            self._held[key] = phase  # a compiled jump, as a field, has numbers of its run
+        return phase
 
 
 def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int) -> NonlinearPhase:
