@@ -352,10 +352,37 @@ function copying() {
   });
 }
 
+// Files and folders that are dropped anywhere: a project is opened, records are read.
+function dropping() {
+  addEventListener("dragover", (event) => event.dataTransfer.types.includes("Files") && event.preventDefault());
+  addEventListener("drop", async (event) => {
+    if (!event.dataTransfer.types.includes("Files")) return;
+    event.preventDefault();
+    const given = [...event.dataTransfer.files];
+    const entries = [...event.dataTransfer.items].map((each) => each.webkitGetAsEntry?.());
+    const files = entries.some((each) => each?.isDirectory) ? (await Promise.all(entries.filter(Boolean).map(filesIn))).flat() : given;
+    if (!app.state || !files.length) return;
+    const tab = /\.rockflex$/i.test(files[0].name) ? "structure" : "earthquake";
+    app.state.tab = tab;
+    keep();
+    await show();
+    made[tab].drop(files);
+  });
+}
+
+// The files of what was dropped, and of the folders in it.
+async function filesIn(entry) {
+  if (entry.isFile) return [await new Promise((resolve, reject) => entry.file(resolve, reject))];
+  const [reader, found] = [entry.createReader(), []];
+  for (let some; !some || some.length; found.push(...some)) some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+  return (await Promise.all(found.map(filesIn))).flat();
+}
+
 themes();
 tabs();
 copying();
 undoing();
+dropping();
 printing(heading);
 try {
   app.about = await get("/api/about");

@@ -225,7 +225,7 @@ export default function structureTab(app) {
     shown.resume();
     load();
   }
-  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs) };
+  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs), drop: ([file]) => saved.take(file) };
 }
 
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
