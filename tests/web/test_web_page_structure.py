@@ -262,7 +262,21 @@ def test_a_block_brings_the_models_that_it_can_have(visitor) -> None:
     block = rf.rigid_block(**state["structure"]["block"])
     expected = rf.simulate(block, rf.load_suite("el-centro-1940")[0], "rigid", free_vibration=5.0)
     assert visitor.peak("rigid", "max_rotation") == expected.max_rotation
+    # Only what a block has: no other models, and neither charts nor columns of forces that bend it.
+    assert page.locator("#view .chips.models input:visible").count() == 1
+    assert page.locator("#peaks [data-name=max_base_moment]").count() == 0
+    shown = "Object.entries(rockflexStage.charts).filter(([, each]) => each.element.checkVisibility())"
+    assert page.evaluate(f"{shown}.map(([name]) => name)") == ["rotation", "displacement"]
+    assert page.evaluate(f"{shown}.map(([, each]) => each.options.xLabel)") == ["", "time [s]"]
+    visitor.fill("scale", "10")
+    visitor.shown(10, ["rigid"])
+    assert "overturned" in page.locator("#peaks [data-name=status]").inner_text()
+    assert page.locator("#peaks [data-name=max_total_top_displacement]").inner_text() == "–"
+    visitor.fill("scale", "1")
+    visitor.tab("design")
+    assert page.get_by_label("Model").locator("option").all_inner_texts() == ["rigid"]
     visitor.tab("structure")
+    page.wait_for_selector("#three [data-three=share]")
     page.get_by_label("Kind").select_option("frame")
     state = visitor.state()
     assert [state[name] for name in ("models", "cloud", "design")] == [

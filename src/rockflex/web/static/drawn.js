@@ -236,7 +236,7 @@ export function drawing(app, settle) {
 }
 
 // Largest rotation, top displacement, and base moment over that of a fixed base.
-function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff }) {
+function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff, period: modal, nominal }) {
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
   const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
@@ -247,8 +247,9 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
       peaks.max_rotation),
     one("top", t("Top displacement"), fell ? "–" : outputInUnit("max_top_displacement", top, 3),
       stiff ? t("{top} if its base were held down", { top: outputInUnit("max_top_displacement", stiff, 3) }) : t("relative to the ground"), top),
-    one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
-      fixed ? peaks.max_base_moment / fixed : null),
+    ...(modal ? [one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
+      fixed ? peaks.max_base_moment / fixed : null)]
+      : [one("share", t("Rotation over the limit"), fell ? "–" : inUnit(peaks.max_rotation / nominal, "share", 3), t("of the nominal limit of the rotation"), peaks.max_rotation / nominal)]),
   ];
 }
 

@@ -122,6 +122,7 @@ export function recordSet(app, compared) {
   return { form, results, beside, refresh, close: (runs) => study.close(runs) };
 }
 
+export const OF_STANDING = ["max_rotation", "max_top_displacement", "max_total_top_displacement"]; // what one that falls has not
 const plain = ({ symbol: text, unit: name }) => (name ? `${t(text)} [${name}]` : t(text));
 
 function summary({ demands, records, model }) {
@@ -144,5 +145,5 @@ function ofRecords({ demands, records }) {
   return tableOf([t("no."), t("record"), t("outcome"), t("factor"), ...listed.map((each) => symbol(plain(each)))],
     records.map((each, i) => h("tr", { "data-record": each.name }, h("td", {}, String(i + 1)), h("th", { scope: "row" }, each.name),
       h("td", { class: each.status }, t(each.status.replace("_", " "))), h("td", {}, number(each.scale, 3)),
-      listed.map((demand) => h("td", { "data-name": demand.name, "data-value": demand.peaks[i] }, number(demand.peaks[i] / demand.size))))));
+      listed.map((demand) => h("td", { "data-name": demand.name, "data-value": demand.peaks[i] }, each.status === "overturned" && OF_STANDING.includes(demand.name) ? "–" : number(demand.peaks[i] / demand.size))))));
 }

@@ -26,7 +26,7 @@ const HISTORIES = [
   ["acceleration", "a [{unit}]", "acceleration", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
   ["vertical", "a_v [{unit}]", "acceleration", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
   ["velocity", "v [{unit}]", "velocity", "c2", 110, t("Ground velocity over time"), t("velocity")],
-  ["displacement", "d [{unit}]", "length", "c3", 126, t("Ground displacement over time"), t("displacement")],
+  ["displacement", "d [{unit}]", "length", "c3", 110, t("Ground displacement over time"), t("displacement")],
 ];
 
 export default function earthquakeTab(app) {

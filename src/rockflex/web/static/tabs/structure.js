@@ -33,7 +33,7 @@ const DEFAULTS = {
     omega: [6.2832], effective_mass: [175906], effective_height: [10.54], top_ordinate: [1.2517],
     i_theta: 20066620, l0r: 1800000, m_tot: 240000, half_width: 1.054, zeta: 0.02,
   },
-  block: { slenderness: 0.2, half_diagonal: 3 },
+  block: { slenderness: 0.2, half_diagonal: 3, mass: 17000 }, // of concrete, a metre thick
 };
 
 // Tables nested in that of a structure, by name.
@@ -59,7 +59,6 @@ export default function structureTab(app) {
     app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
   }
 
-  // A rigid block has no modes, and all models but one need some.
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
     if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } };
@@ -201,7 +200,7 @@ export default function structureTab(app) {
       view.warnings.length
         ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
       view.freedoms ? h("p", { class: "hint", id: "freedoms" }, view.freedoms) : "",
-      pictures(view),
+      view.kind === "block" ? "" : pictures(view),
       h("dl", { class: "values" }, view.properties.map(parameter)),
       view.section.length ? h("h2", {}, t("Cross-section")) : "",
       view.section.length ? h("dl", { class: "values", id: "section" }, view.section.map(parameter)) : "",
