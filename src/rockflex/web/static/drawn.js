@@ -3,7 +3,7 @@
 import { attempt, get } from "./api.js";
 import { explained } from "./choices.js";
 import { clone, decode, h, latest, number } from "./dom.js";
-import { box, select, slider } from "./form.js";
+import { ambiguous, box, select, slider } from "./form.js";
 import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
 import { eachNumber, inUnit, outputInUnit } from "./units.js";
@@ -264,7 +264,7 @@ function few(app, shown, settle, stale) {
   };
   const field = (name, label, unit, hint) => box(`few.${name}`, label, "", (value) => {
     const { [name]: found } = measured();
-    tell(name, found && !(value > 0));
+    tell(name, found && !(value > 0) && (ambiguous(value) ? t("Is the comma for thousands or for decimals? Write {thousands} or {decimals}.", { thousands: value.replace(",", ""), decimals: value.replaceAll(".", "").replace(",", ".") }) : t("It must be a number above 0.")));
     stale(bad.size > 0);
     if (!found || bad.has(name)) return;
     app.change({ structure: found.set(value) }, true);
@@ -272,13 +272,14 @@ function few(app, shown, settle, stale) {
   }, { unit, hint, digits: 4 });
   const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
 
-  // Beside a field, that it has no number that can be used, until another one is typed or the structure is another.
-  function tell(name, on) {
+  // Say beside a field why its text cannot be used, until another one is typed or the structure is another.
+  function tell(name, said) {
+    const on = Boolean(said);
     const place = fields[name].querySelector(".error");
     if (on) bad.set(name, app.state.structure);
     else bad.delete(name);
     place.root = on ? place : null;
-    place.textContent = on ? t("It must be a number above 0.") : "";
+    place.textContent = said || "";
     fields[name].querySelector("input").setAttribute("aria-invalid", String(on));
   }
   const record = select("few.record", t("Earthquake record"), [], "", (value) => {
@@ -307,7 +308,7 @@ function few(app, shown, settle, stale) {
     scale.setValue(by);
     const found = measured();
     const kind = kindOf(app.state.structure, app.about.kinds);
-    for (const [name, structure] of bad) if (structure !== app.state.structure) tell(name, false);
+    for (const [name, structure] of bad) if (structure !== app.state.structure) tell(name);
     for (const [name, each] of Object.entries(fields)) {
       each.hidden = !found[name];
       if (!found[name] || bad.has(name)) continue;

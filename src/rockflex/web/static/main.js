@@ -252,8 +252,8 @@ async function renew(runs) {
   await show();
   for (const [name, { close }] of before) {
     if (!runs || !close) continue;
-    const { default: make } = await import(`./tabs/${name}.js`); // meanwhile it may be shown
-    made[name] ??= make(app);
+    const found = await import(`./tabs/${name}.js`).catch(() => null); // meanwhile it may be shown
+    if (found) made[name] ??= found.default(app);
   }
 }
 
@@ -270,8 +270,14 @@ async function show() {
     button.tabIndex = chosen ? 0 : -1;
   }
   for (const [name, each] of Object.entries(made)) if (name !== tab) each.leave?.();
-  const { default: make } = await import(`./tabs/${tab}.js`);
+  const found = await import(`./tabs/${tab}.js`).catch(() => null);
   if (app.state.tab !== tab) return;
+  if (!found && !made[tab]) {
+    view.replaceChildren(h("p", { class: "error", role: "alert" }, t("This tab cannot be loaded: the server does not respond. Is rockflex serve still running? Your input is in the address; reload the page then.")));
+    view.dataset.shown = tab;
+    return;
+  }
+  const { default: make } = found ?? {};
   made[tab] ??= make(app);
   const [, , about] = TABS.find(([name]) => name === tab);
   view.replaceChildren(h("p", { class: "help" }, about), made[tab].element);
