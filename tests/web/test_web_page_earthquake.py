@@ -284,6 +284,35 @@ def wait_for_fit(visitor, chosen) -> None:
     visitor.wait_for("[data-fact=misfit]", chosen.misfit, 1e-9)
 
 
+def test_a_record_without_a_unit_is_read_again_and_begins_at_scale_one(visitor) -> None:
+    """Dropped on another tab; unit and step are chosen after the file."""
+    page = visitor.page
+    visitor.tab("earthquake")
+    visitor.fill("scale", "3")
+    visitor.tab("design")
+    rows = "\n".join(f"{0.1 * math.sin(0.2 * k):.5f}" for k in range(400))
+    page.evaluate(
+        """text => {
+          const dataTransfer = new DataTransfer();
+          dataTransfer.items.add(new File([text], "own.txt"));
+          document.body.dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
+        }""",
+        rows,
+    )
+    page.wait_for_selector('#view[data-shown="earthquake"]')
+    visitor.wait_for_error("record.upload")
+    assert visitor.state()["scale"] == 3
+    visitor.fill("upload.dt", "0.01")
+    page.locator('[data-path="upload.units"] select').select_option("g")
+    page.wait_for_function("() => rockflexPage.state.record.upload")
+    assert visitor.state()["scale"] == 1
+    page.locator("#record-title", has_text="own").wait_for()
+    visitor.wait_for('[data-measure="PGA"]', 0.1 * G, 1e-3)
+    visitor.fill("scale", "2")
+    page.locator('[data-path="upload.units"] select').select_option("m/s2")  # the same file, at the scale it has
+    visitor.wait_for('[data-measure="PGA"]', 0.2, 1e-3)
+
+
 @pytest.mark.slow
 def test_records_are_chosen_for_codes_and_tables(visitor) -> None:
     page = visitor.page

@@ -7,9 +7,12 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.web._forms import PRESETS
+from rockflex.foundation.json import as_json_value
+from rockflex.web._forms import FIRST, PRESETS
 
 pytestmark = pytest.mark.web
+
+PIER = as_json_value(FIRST["structure"])
 
 NONSENSE = (
     "", "x", "-1", "1e999", "nan", "inf", "1e300", "0", "'; drop", "<b>1</b>", "١٢", "9" * 400, "1,2,3", "[[1]]",
@@ -26,7 +29,7 @@ def test_structure_by_presets_form_and_errors(visitor, frame) -> None:
     three = make_frame(n_stories=3)
     assert visitor.value("#modes tbody tr:nth-child(2) td") == pytest.approx(three.modal().period[1], rel=1e-12)
     visitor.fill("structure.frame.n_stories", "1000000")
-    visitor.wait_for_error("structure.frame.n_stories", "It must be from 1 to 200, but 1e+06 was given.")
+    visitor.wait_for_error("structure.frame.n_stories", "must be from 1 to 200")
     visitor.fill("structure.frame.period", "soon")
     visitor.wait_for_error("structure.frame.period", "It must be the first period on a fixed base")
     for place, preset in enumerate(PRESETS):
@@ -57,7 +60,7 @@ def test_an_eccentric_base_has_two_edges(visitor) -> None:
         assert p.pivot(side).resisting_moment in shown
         assert p.pivot(side).i_theta in shown
     visitor.fill("structure.eccentricity", "5")
-    visitor.wait_for_error("structure.eccentricity", "Eccentricity must be smaller than half_width")
+    visitor.wait_for_error("structure.eccentricity", "must be smaller than half width")
     visitor.fill("structure.eccentricity", "")
     page.wait_for_function("() => !/edge/.test(document.querySelector('#modes').textContent)")
     assert "eccentricity" not in visitor.state()["structure"]
@@ -262,12 +265,51 @@ def test_a_block_brings_the_models_that_it_can_have(visitor) -> None:
     block = rf.rigid_block(**state["structure"]["block"])
     expected = rf.simulate(block, rf.load_suite("el-centro-1940")[0], "rigid", free_vibration=5.0)
     assert visitor.peak("rigid", "max_rotation") == expected.max_rotation
+    # Only what a block has: no other models, and neither charts nor columns of forces that bend it.
+    assert page.locator("#view .chips.models input:visible").count() == 1
+    assert page.locator("#peaks [data-name=max_base_moment]").count() == 0
+    shown = "Object.entries(rockflexStage.charts).filter(([, each]) => each.element.checkVisibility())"
+    assert page.evaluate(f"{shown}.map(([name]) => name)") == ["rotation", "displacement"]
+    assert page.evaluate(f"{shown}.map(([, each]) => each.options.xLabel)") == ["", "time [s]"]
+    visitor.fill("scale", "10")
+    visitor.shown(10, ["rigid"])
+    assert "overturned" in page.locator("#peaks [data-name=status]").inner_text()
+    assert page.locator("#peaks [data-name=max_total_top_displacement]").inner_text() == "–"
+    visitor.fill("scale", "1")
+    visitor.tab("design")
+    assert page.get_by_label("Model").locator("option").all_inner_texts() == ["rigid"]
     visitor.tab("structure")
+    page.wait_for_selector("#three [data-three=share]")
     page.get_by_label("Kind").select_option("frame")
     state = visitor.state()
     assert [state[name] for name in ("models", "cloud", "design")] == [
         before[name] for name in ("models", "cloud", "design")
     ]
+
+
+def test_messages_have_the_words_and_units_of_the_page(visit, link) -> None:
+    visitor = visit(link({"structure": PIER, "units": "kN"}))
+    visitor.fill("structure.cantilever.tip_mass", "-3")
+    visitor.wait_for_error("structure.cantilever.tip_mass", "Tip mass must be positive, but −3 t was given.")
+    visitor.fill("structure.cantilever.tip_mass", "900")
+    visitor.fill("structure.eccentricity", "9")
+    visitor.wait_for_error("structure.eccentricity", "half width")
+    assert "_" not in visitor.page.locator('[data-path="structure.eccentricity"] > .error').inner_text()
+    visitor.fill("structure.eccentricity", "")
+    visitor.fill("few.H", "1,234.5")
+    visitor.wait_for_error("few.H", "1234.5 or 1.2345")
+
+
+def test_without_the_server_an_unloaded_tab_says_so(visit, server) -> None:
+    visitor = visit()
+    page = visitor.page
+    visitor.wait_for_results()
+    page.route(f"{server}/**", lambda route: route.abort())
+    page.click('[data-tab="design"]')
+    page.locator("#view .error", has_text="rockflex serve").wait_for()
+    page.unroute_all()
+    visitor.said.clear()  # the browser's own words about the requests
+    assert visitor.state()["tab"] == "design"
 
 
 CONCRETE = {"elastic_modulus": 3e10, "density": 2500.0}
@@ -328,7 +370,7 @@ def test_bad_sizes_are_answered_in_the_form(visitor) -> None:
     pier(visitor)
     page.get_by_label("Cross-section").select_option("tube")
     visitor.fill("structure.cantilever.section.wall", "9e5")
-    visitor.wait_for_error("structure.cantilever.section.wall", "It must be from 0.0001 to 100")
+    visitor.wait_for_error("structure.cantilever.section.wall", "must be from 0.0001 m to 100 m")
     visitor.fill("structure.cantilever.section.wall", "0.9")
     visitor.wait_for_error("structure.cantilever.section", "wall must be less than half of 1.5 m")
     visitor.fill("structure.cantilever.section.wall", "")

@@ -40,8 +40,8 @@ def test_what_is_typed_in_inches_and_kips_is_kept_in_si_units(visit, link):
     visitor.fill("structure.elements.0.initial_force", "500")
     assert visitor.state()["structure"]["elements"][0]["initial_force"] == float(f"{5e5 * constants.lbf:.15g}")
     visitor.fill("structure.cantilever.half_width", "-2")
-    visitor.wait_for_error("structure.cantilever.half_width", "In SI units (m): ")
-    assert "-0.0508 was given" in text(visitor, '[data-path="structure.cantilever.half_width"] > .error')
+    visitor.wait_for_error("structure.cantilever.half_width", " in, but ")
+    assert "−2 in was given" in text(visitor, '[data-path="structure.cantilever.half_width"] > .error')
     visitor.fill("structure.cantilever.half_width", "wide")  # no number, so no unit
     visitor.wait_for_error("structure.cantilever.half_width", "wide")
     assert "SI" not in text(visitor, '[data-path="structure.cantilever.half_width"] > .error')

@@ -3,6 +3,7 @@
 import re
 import shutil
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -261,6 +262,11 @@ def test_the_set_on_the_page(visit, link, state, same, axe) -> None:
     for rules in ([], ["color-contrast"]):  # in the other theme, only contrast differs
         assert axe(page, *rules) == []
         page.click("#theme")
+    visitor.fill("limits.friction", "0.3")  # of the same runs: nothing turns gray, and no button is pressed
+    page.wait_for_selector('#record-set .checks [data-check="sliding"]')
+    assert page.locator("#record-set.stale").count() == 0
+    ratio = rf.check(replace(same, rule=None), rf.CheckLimits(friction=0.3)).to_frame().loc["sliding", "ratio"]
+    visitor.wait_for('#record-set .checks [data-check="sliding"] [data-name="ratio"]', ratio, 1e-9)
     page.locator("#longer").click()  # the range ends at the rocking period, or with the target
     page.wait_for_function("() => rockflexPage.state.target.longest > 2")
     page.wait_for_function("() => !document.querySelector('#longer')?.checkVisibility()")

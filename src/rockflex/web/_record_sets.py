@@ -52,6 +52,7 @@ def _bytes_of_set(found: RecordSet) -> int:
 
 
 _SETS = LatestValuesCache[RecordSet](MAX_KEPT_BYTES, _bytes_of_set)
+_WITH_FRICTION = LatestValuesCache[bool](200)  # those whose responses know the friction that they require
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
             options = each.run_options(ground)
             case = options.case(parse_model(label), built.properties, history=True, floors=True)
         friction = "friction" in state.limits and case.model.springs is None  # on springs it takes minutes
-        made_from = [each.structure.model_dump(exclude_none=True), each.option_keys([label]), label, friction]
+        made_from = [each.structure.model_dump(exclude_none=True), each.option_keys([label]), label]
         made_from += [state.free_vibration, acting]
         return RunsOfSet(name, each, built, case, friction, sha256(json.dumps(made_from).encode()).hexdigest())
 
@@ -149,10 +150,21 @@ class RecordSetJob(RunsJob):
     def work(self) -> None:
         """Run all records, and compute of each what the views of the set ask for at once."""
         for each in self.study.all:
-            if _SETS.get(each.key) is None:
+            known = _SETS.get(each.key)
+            if known is None:
                 self._run(each)
+            elif each.friction and _WITH_FRICTION.get(each.key) is None:
+                for run in known.responses:
+                    self._check(run, each)
             else:
                 self.runs += len(self.study.motions)
+            if each.friction:
+                _WITH_FRICTION.put(each.key, True)
+
+    def _check(self, run: Response, runs: RunsOfSet) -> None:
+        check_interruption()
+        check(run, self.study.own.state.check_limits(friction=runs.friction))
+        self.runs += 1
 
     def _run(self, runs: RunsOfSet) -> None:
         found = list[Response]()
@@ -161,8 +173,7 @@ class RecordSetJob(RunsJob):
             with errors_as_refusals("record_set.suites", f"{motion.name}: "):
                 found.append(runs.case.run(motion))
             _ = found[-1].warnings  # its energies, which the response then has
-            check(found[-1], self.study.own.state.check_limits(friction=runs.friction))
-            self.runs += 1
+            self._check(found[-1], runs)
         given: dict[str, Any] = {"properties": runs.built.properties, "rule": None, "periods": None}
         _SETS.put(runs.key, RecordSet(responses=tuple(found), motions=self.study.motions, **given))
 
@@ -280,10 +291,12 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
          "pga": motion.pga, **_rotation_curve(run)}
         for run, motion in zip(found.responses, found.motions, strict=True)
     ]  # fmt: skip
+    own = job.study.own
+    view["friction_due"] = "friction" in state.limits and not own.friction and own.case.model.springs is None
     reached = found.rocking_period
     view["short"] = found.periods is not None and found.periods[1] < min(reached, _longest_of_target(state))
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
-    view["checks"] = checks_view(found, state, friction=job.study.own.friction)
+    view["checks"] = checks_view(found, state, friction=own.friction)
     view["compared"] = _compared_view(job, state)
     return as_json_value(view)
 

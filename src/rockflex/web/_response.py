@@ -150,6 +150,7 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
     return as_json_value(
         {
             "models": [curves],
+            "nominal": p.nominal_overturning_rotation,
             "fixed_base_moment": moment,
             "fixed_top_displacement": top,
         }

@@ -329,7 +329,8 @@ class PageState(RunOptionKeys):
         try:
             return CheckLimits(**{name: each for name, each in self.limits.items() if friction or name != "friction"})
         except InputError as error:
-            raise Refusal({f"limits.{error.field}": str(error)}) from error
+            asked = unclear_commas_text(self.limits.get(error.field or ""))
+            raise Refusal({f"limits.{error.field}": f"{error}{asked}"}) from error
 
     def run_options(self, ground: Ground | None) -> RunOptions:
         """Return the options of the runs of the Response tab, on the ground of the structure."""

@@ -95,7 +95,7 @@ export function alternatives(app, show, own = false) {
 
   // Show what an answer about the set says of them.
   function set({ ready, compared }) {
-    under.replaceChildren(...(ready && compared ? underSet(app, compared) : []));
+    if (ready) under.replaceChildren(...(compared ? underSet(app, compared) : []));
   }
   let shown = ""; // what determines the table that is shown
 

@@ -194,10 +194,16 @@ export class Chart {
 // Charts over time, one below the other, which zoom together; only the last one names the axis.
 export function overTime(charts) {
   const group = [];
-  for (const options of charts) {
-    const last = group.length === charts.length - 1;
-    const time = { xName: "t [s]", xLabel: last ? t("time [s]") : "", noXText: !last };
-    group.push(new Chart({ ...time, group, symmetric: true, left: 80, ...options }));
-  }
+  for (const options of charts) group.push(new Chart({ xName: "t [s]", group, symmetric: true, left: 80, ...options }));
+  withTime(group);
   return group;
+}
+
+// Give the last of those that are not hidden the axis of time, and its room.
+export function withTime(group) {
+  const last = group.findLast(({ element }) => !element.hidden) ?? group.at(-1);
+  for (const chart of group) {
+    chart.tall ??= chart.options.height;
+    Object.assign(chart.options, { xLabel: chart === last ? t("time [s]") : "", noXText: chart !== last, height: chart.tall + (chart === last ? 16 : 0) });
+  }
 }

@@ -30,6 +30,9 @@ export function explained(label) {
 // Whether a model can stand on springs, or slide.
 export const grounded = (label) => !/fixed/.test(label);
 
+// A rigid block has no modes, and all models but one need some.
+export const isBlock = (structure) => "block" in structure;
+
 export const yields = (label) => label.includes("-BW");
 
 export function models(path, chosen, most, change) {
@@ -72,10 +75,12 @@ export function models(path, chosen, most, change) {
   draw();
   const element = h("div", { class: "field", "data-path": path },
     h("div", { class: "label" }, t("Models (up to {most})", { most })), chips, other, trouble());
-  // The chosen models, and whether yielding models are offered too.
-  element.setValue = (value, yielding = false) => {
+  // The chosen models of a state, which may have some that yield; a rigid block has one model.
+  element.setValue = (value, { structure, bouc_wen }) => {
     now = clone(value);
-    offered = yielding ? [...MODELS, ...YIELDING] : MODELS;
+    const block = isBlock(structure);
+    offered = block ? MODELS.filter(([label]) => label === "rigid") : bouc_wen ? [...MODELS, ...YIELDING] : MODELS;
+    other.hidden = block;
     const key = JSON.stringify([now, offered]);
     if (key === element.dataset.drawn) return;
     element.dataset.drawn = key;

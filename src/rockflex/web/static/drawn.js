@@ -3,7 +3,7 @@
 import { attempt, get } from "./api.js";
 import { explained } from "./choices.js";
 import { clone, decode, h, latest, number } from "./dom.js";
-import { box, select, slider } from "./form.js";
+import { ambiguous, box, select, slider } from "./form.js";
 import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
 import { eachNumber, inUnit, outputInUnit } from "./units.js";
@@ -237,7 +237,7 @@ export function drawing(app, settle) {
 }
 
 // Largest rotation, top displacement, and base moment over that of a fixed base.
-function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff }) {
+function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff, period: modal, nominal }) {
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
   const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
@@ -248,8 +248,9 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
       peaks.max_rotation),
     one("top", t("Top displacement"), fell ? "–" : outputInUnit("max_top_displacement", top, 3),
       stiff ? t("{top} if its base were held down", { top: outputInUnit("max_top_displacement", stiff, 3) }) : t("relative to the ground"), top),
-    one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
-      fixed ? peaks.max_base_moment / fixed : null),
+    ...(modal ? [one("moment", t("Base moment"), share, fixed ? t("of that if its base were held down") : t("at the level of the base"),
+      fixed ? peaks.max_base_moment / fixed : null)]
+      : [one("share", t("Rotation over the limit"), fell ? "–" : inUnit(peaks.max_rotation / nominal, "share", 3), t("of the nominal limit of the rotation"), peaks.max_rotation / nominal)]),
   ];
 }
 
@@ -264,7 +265,7 @@ function few(app, shown, settle, stale) {
   };
   const field = (name, label, unit, hint) => box(`few.${name}`, label, "", (value) => {
     const { [name]: found } = measured();
-    tell(name, found && !(value > 0));
+    tell(name, found && !(value > 0) && (ambiguous(value) ? t("Is the comma for thousands or for decimals? Write {thousands} or {decimals}.", { thousands: value.replace(",", ""), decimals: value.replaceAll(".", "").replace(",", ".") }) : t("It must be a number above 0.")));
     stale(bad.size > 0);
     if (!found || bad.has(name)) return;
     app.change({ structure: found.set(value) }, true);
@@ -272,13 +273,14 @@ function few(app, shown, settle, stale) {
   }, { unit, hint, digits: 4 });
   const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
 
-  // Beside a field, that it has no number that can be used, until another one is typed or the structure is another.
-  function tell(name, on) {
+  // Say beside a field why its text cannot be used, until another one is typed or the structure is another.
+  function tell(name, said) {
+    const on = Boolean(said);
     const place = fields[name].querySelector(".error");
     if (on) bad.set(name, app.state.structure);
     else bad.delete(name);
     place.root = on ? place : null;
-    place.textContent = on ? t("It must be a number above 0.") : "";
+    place.textContent = said || "";
     fields[name].querySelector("input").setAttribute("aria-invalid", String(on));
   }
   const record = select("few.record", t("Earthquake record"), [], "", (value) => {
@@ -307,7 +309,7 @@ function few(app, shown, settle, stale) {
     scale.setValue(by);
     const found = measured();
     const kind = kindOf(app.state.structure, app.about.kinds);
-    for (const [name, structure] of bad) if (structure !== app.state.structure) tell(name, false);
+    for (const [name, structure] of bad) if (structure !== app.state.structure) tell(name);
     for (const [name, each] of Object.entries(fields)) {
       each.hidden = !found[name];
       if (!found[name] || bad.has(name)) continue;

@@ -28,6 +28,7 @@ export function field(path, label, control, { unit = "", hint = "", help = "", n
     sign.hidden = !si;
   };
   element.setUnit(unit);
+  if (typeof label === "string" && !path.startsWith("few.")) labels.set(path.split(".").at(-1), label.charAt(0).toLowerCase() + label.slice(1));
   return element;
 }
 
@@ -63,14 +64,34 @@ export function showErrors(root, errors) {
 }
 
 function tellBeside(element, text, root) {
-  const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
-  const { si } = element.dataset;
   const place = element.querySelector(":scope > .error");
   place.root = root;
-  place.textContent = si && /\d/.test(text) ? t("In SI units ({unit}): {message}", { unit: si, message: text }) : sentence;
+  place.textContent = worded(element, text);
   // A message about a whole group does not concern its single fields.
   if (element.classList.contains("field"))
     for (const control of controls(element)) control.setAttribute("aria-invalid", "true");
+}
+
+const labels = new Map(); // of all fields so far, by their names in files and in Python
+const POSITIVE = /^(?:it|\w+) must be a (zero or )?positive, finite number(?: in .*?)?, but (\S+) was given\.$/;
+const RANGE = /^it must be from (\S+) to (\S+), but (\S+) was given\.$/;
+const ONE_NAME = /\b[a-z]+(?:_[a-z0-9]+)+\b/g;
+
+// A message in the words and units of the page, where its form is known.
+function worded(element, text) {
+  const label = element.classList.contains("field") ? element.querySelector("label")?.textContent : null;
+  const { unit } = element;
+  if (label && unit) {
+    const shown = (value) => `${Number.isFinite(Number(value)) ? number(fromSI(Number(value), unit), 6) : value.replace("inf", "∞")} ${unit.name}`.trim();
+    const [, zero, given] = POSITIVE.exec(text) ?? [];
+    if (given) return zero ? t("{field} must be zero or positive, but {value} was given.", { field: label, value: shown(given) })
+      : t("{field} must be positive, but {value} was given.", { field: label, value: shown(given) });
+    const [, low, high, value] = RANGE.exec(text) ?? [];
+    if (value) return t("{field} must be from {low} to {high}, but {value} was given.", { field: label, low: shown(low), high: shown(high), value: shown(value) });
+  }
+  const { si } = element.dataset;
+  const plain = text.replace(ONE_NAME, (name) => labels.get(name) ?? name.replaceAll("_", " "));
+  return si && /\d/.test(text) ? t("In SI units ({unit}): {message}", { unit: si, message: plain }) : plain.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
 }
 
 function controls(element) {
@@ -88,6 +109,9 @@ export function folded(name, title, ...children) {
 const DECIMAL = /^[+-]?\d+,\d+(e[+-]?\d+)?$/i; // with a comma
 const THOUSANDS = /^[+-]?[1-9]\d{0,2},\d{3}(\.\d*)?$/; // perhaps: in English 1,234 may be either
 const unclear = (word) => !COMMA && THOUSANDS.test(word);
+
+// Whether a text may be one of two numbers.
+export const ambiguous = (text) => unclear(String(text).trim());
 
 // Text that is not a number, or may be one of two, is sent unchanged: the server's message names the field.
 export function parseNumber(text) {

@@ -252,8 +252,8 @@ async function renew(runs) {
   await show();
   for (const [name, { close }] of before) {
     if (!runs || !close) continue;
-    const { default: make } = await import(`./tabs/${name}.js`); // meanwhile it may be shown
-    made[name] ??= make(app);
+    const found = await import(`./tabs/${name}.js`).catch(() => null); // meanwhile it may be shown
+    if (found) made[name] ??= found.default(app);
   }
 }
 
@@ -270,8 +270,14 @@ async function show() {
     button.tabIndex = chosen ? 0 : -1;
   }
   for (const [name, each] of Object.entries(made)) if (name !== tab) each.leave?.();
-  const { default: make } = await import(`./tabs/${tab}.js`);
+  const found = await import(`./tabs/${tab}.js`).catch(() => null);
   if (app.state.tab !== tab) return;
+  if (!found && !made[tab]) {
+    view.replaceChildren(h("p", { class: "error", role: "alert" }, t("This tab cannot be loaded: the server does not respond. Is rockflex serve still running? Your input is in the address; reload the page then.")));
+    view.dataset.shown = tab;
+    return;
+  }
+  const { default: make } = found ?? {};
   made[tab] ??= make(app);
   const [, , about] = TABS.find(([name]) => name === tab);
   view.replaceChildren(h("p", { class: "help" }, about), made[tab].element);
@@ -352,10 +358,37 @@ function copying() {
   });
 }
 
+// Files and folders that are dropped anywhere: a project is opened, records are read.
+function dropping() {
+  addEventListener("dragover", (event) => event.dataTransfer.types.includes("Files") && event.preventDefault());
+  addEventListener("drop", async (event) => {
+    if (!event.dataTransfer.types.includes("Files")) return;
+    event.preventDefault();
+    const given = [...event.dataTransfer.files];
+    const entries = [...event.dataTransfer.items].map((each) => each.webkitGetAsEntry?.());
+    const files = entries.some((each) => each?.isDirectory) ? (await Promise.all(entries.filter(Boolean).map(filesIn))).flat() : given;
+    if (!app.state || !files.length) return;
+    const tab = /\.rockflex$/i.test(files[0].name) ? "structure" : "earthquake";
+    app.state.tab = tab;
+    keep();
+    await show();
+    made[tab].drop(files);
+  });
+}
+
+// The files of what was dropped, and of the folders in it.
+async function filesIn(entry) {
+  if (entry.isFile) return [await new Promise((resolve, reject) => entry.file(resolve, reject))];
+  const [reader, found] = [entry.createReader(), []];
+  for (let some; !some || some.length; found.push(...some)) some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+  return (await Promise.all(found.map(filesIn))).flat();
+}
+
 themes();
 tabs();
 copying();
 undoing();
+dropping();
 printing(heading);
 try {
   app.about = await get("/api/about");

@@ -33,5 +33,5 @@ export function project(app) {
     downloads(app, [["project", t("Save the project")]]),
     h("label", { for: "open-project" }, t("Open a project")), fileBox(".rockflex", take, { id: "open-project" }), told, trouble()));
   const refresh = () => entries.forEach(([name, input]) => document.activeElement !== input && (input.value = app.state.head[name] ?? ""));
-  return { element, refresh };
+  return { element, refresh, take };
 }

@@ -30,9 +30,8 @@ const modelOf = ({ models, record_set: { model } }) => (models.includes(model) ?
 
 // What determines the runs of a set, those of the alternatives included.
 export function keyOfSet({ state }) {
-  const { record_set: { suites, scale }, ground, limits } = state;
-  return JSON.stringify([assumed(state, [modelOf(state)]), recordsOf(state, suites), scale, state.free_vibration,
-    !(ground?.springs || ground?.bed) && limits.friction !== undefined, state.alternatives]);
+  const { record_set: { suites, scale } } = state;
+  return JSON.stringify([assumed(state, [modelOf(state)]), recordsOf(state, suites), scale, state.free_vibration, state.alternatives]);
 }
 
 // Its form, and its results; `compared` takes each answer as well.
@@ -63,11 +62,14 @@ export function recordSet(app, compared) {
     [["record_set-python", t("Python lines")]]));
   const ofAll = reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")).map(([what]) => results.querySelector(`[data-file="${what}"]`));
   let view = null;
+  let due = false; // whether the friction is asked for
 
   function show(answer) {
-    drawing.hidden = !answer.ready;
-    compared(answer);
+    drawing.hidden = !answer.ready && !view;
     if (!answer.ready) return;
+    compared(answer);
+    if (answer.friction_due && !due) study.run.click(); // the friction of the same runs, which stay in sight
+    due = answer.friction_due;
     view = answer;
     const now = shown.querySelector("select").value || "max_rotation";
     const names = view.demands.map((each) => each.name);
@@ -122,6 +124,7 @@ export function recordSet(app, compared) {
   return { form, results, beside, refresh, close: (runs) => study.close(runs) };
 }
 
+export const OF_STANDING = ["max_rotation", "max_top_displacement", "max_total_top_displacement"]; // what one that falls has not
 const plain = ({ symbol: text, unit: name }) => (name ? `${t(text)} [${name}]` : t(text));
 
 function summary({ demands, records, model }) {
@@ -144,5 +147,5 @@ function ofRecords({ demands, records }) {
   return tableOf([t("no."), t("record"), t("outcome"), t("factor"), ...listed.map((each) => symbol(plain(each)))],
     records.map((each, i) => h("tr", { "data-record": each.name }, h("td", {}, String(i + 1)), h("th", { scope: "row" }, each.name),
       h("td", { class: each.status }, t(each.status.replace("_", " "))), h("td", {}, number(each.scale, 3)),
-      listed.map((demand) => h("td", { "data-name": demand.name, "data-value": demand.peaks[i] }, number(demand.peaks[i] / demand.size))))));
+      listed.map((demand) => h("td", { "data-name": demand.name, "data-value": demand.peaks[i] }, each.status === "overturned" && OF_STANDING.includes(demand.name) ? "–" : number(demand.peaks[i] / demand.size))))));
 }

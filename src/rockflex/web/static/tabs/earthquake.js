@@ -1,6 +1,6 @@
 // Earthquake: a record of a suite, a pulse or a file, its history, spectrum and measures.
 
-import { attempt, get } from "../api.js";
+import { attempt, get, isArchive } from "../api.js";
 import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number, svg } from "../dom.js";
 import { between, select, slider, trouble } from "../form.js";
@@ -26,7 +26,7 @@ const HISTORIES = [
   ["acceleration", "a [{unit}]", "acceleration", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
   ["vertical", "a_v [{unit}]", "acceleration", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
   ["velocity", "v [{unit}]", "velocity", "c2", 110, t("Ground velocity over time"), t("velocity")],
-  ["displacement", "d [{unit}]", "length", "c3", 126, t("Ground displacement over time"), t("displacement")],
+  ["displacement", "d [{unit}]", "length", "c3", 110, t("Ground displacement over time"), t("displacement")],
 ];
 
 export default function earthquakeTab(app) {
@@ -46,10 +46,11 @@ export default function earthquakeTab(app) {
   const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const given = folder(app, (errors) => app.complain(element, errors));
+  const own = uploading(app, (errors) => app.complain(element, errors));
   const panels = {
     suite: h("div", {}, suite, thumbs.element),
     pulse: h("div", {}, shape, Object.values(sliders)),
-    upload: uploading(app, (errors) => app.complain(element, errors)),
+    upload: own.element,
     folder: given.element,
   };
 
@@ -146,7 +147,14 @@ export default function earthquakeTab(app) {
     if (missing) app.complain(element, {});
     else load();
   }
-  return { element, refresh };
+  // Files that are dropped: one is a record, several are a folder of them.
+  function drop(files) {
+    const many = files.length > 1 || isArchive(files[0]);
+    app.change({ target: { shown: false }, record: { source: many ? "folder" : "upload" } });
+    if (many) given.give(files);
+    else own.take(files[0]);
+  }
+  return { element, refresh, drop };
 }
 
 function records(app) {

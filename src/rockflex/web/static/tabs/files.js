@@ -14,12 +14,15 @@ export function uploading(app, complain) {
   let unit = "";
   let step = "";
   let along = ""; // the record without its vertical component
+  let last = null; // the file that was given last, and its path: it is read again with another unit or step
+  let taken = null; // the file of the record, which keeps its scale when it is read again
   const said = h("p", { class: "help", id: "uploaded", role: "status" });
   const kinds = ".at2,.AT2,.csv,.txt,.dat,.tsv,.asc,.ASC,.v1,.V1,.v2,.V2,.v2c,.V2c,.xlsx,.NS,.EW,.UD,.NS2,.EW2,.UD2";
   const input = fileBox(kinds, (file) => take(file, "record.upload"));
   const upwards = fileBox(kinds, (file) => take(file, "record.vertical"));
 
   async function take(file, path) {
+    last = [file, path];
     const vertical = path === "record.vertical";
     const under = vertical ? along || app.state.record.upload : "";
     const large = vertical && !under ? t("Choose the file of the horizontal component first.") : tooLarge(file, most);
@@ -32,20 +35,29 @@ export function uploading(app, complain) {
       said.textContent = found.pva === null ? t("{name}: {count} samples, PGA {pga}", values)
         : t("{name}: {count} samples, PGA {pga}, vertical {pva}", values);
       if (!vertical) along = found.upload;
-      app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
+      app.change({ record: { source: "upload", upload: found.upload, name: found.name }, ...(vertical || taken === file ? {} : { scale: 1 }) });
+      if (!vertical) taken = file;
     }, (error) => {
       said.textContent = "";
       complain(error.errors);
     });
   }
 
-  return h("div", {},
+  const afresh = () => last && take(...last);
+  const element = h("div", {},
     field("record.upload", t("File"), input, { hint: t("AT2, CSV, text columns, Excel, K-NET, ESM or COSMOS; up to {most} MB and {duration} s", { most: most / 1e6, duration }) }),
     field("record.vertical", t("Vertical component"), upwards, { hint: t("optional; upwards positive, with the same step; or a column “vertical” in the file above") }),
-    select("upload.units", t("Unit of the acceleration"), UNITS, "", (value) => (unit = value), { hint: t("if the file does not state it") }),
-    box("upload.dt", t("Sampling step"), undefined, (value) => (step = value), { unit: "s", hint: t("only if the file has no times") }),
+    select("upload.units", t("Unit of the acceleration"), UNITS, "", (value) => {
+      unit = value;
+      afresh();
+    }, { hint: t("if the file does not state it") }),
+    box("upload.dt", t("Sampling step"), undefined, (value) => {
+      step = value;
+      afresh();
+    }, { unit: "s", hint: t("only if the file has no times") }),
     said,
     h("p", { class: "help" }, t("A link does not contain the file: whoever opens it needs the file, too.")));
+  return { element, take: (file) => take(file, "record.upload") };
 }
 
 const HEAD = [t("record"), "PGA [{unit}]", t("duration [s]"), "Δt [s]", "M", "R [km]", "V_s30 [m/s]", t("recording"), t("component"), t("format"), t("file")];
@@ -57,6 +69,8 @@ export function folder(app, complain) {
   let step = "";
   let shown = ""; // the folder of the report
   let times = 0; // that files were given
+  let last = null; // the files that were given last, which are read again with another unit or step
+  let taken = null; // those of the folder, whose record keeps its scale
   const said = h("p", { class: "help", id: "given", role: "status" });
   const input = (attributes) => h("input", {
     type: "file", multiple: true, ...attributes,
@@ -83,6 +97,7 @@ export function folder(app, complain) {
   }
 
   async function give(files) {
+    last = files;
     const mine = ++times; // the answer about files given later may come first
     const large = tooMuch(files);
     said.textContent = large ? "" : files.length === 1 ? t("Reading {name} …", files[0]) : t("Reading {n} files …", { n: files.length });
@@ -93,7 +108,8 @@ export function folder(app, complain) {
       if (mine !== times) return;
       draw(found);
       const first = found.entries.find((entry) => entry.taken);
-      put({ source: "folder", folder: found.folder, given: first.name });
+      app.change({ record: { source: "folder", folder: found.folder, given: first.name }, ...(taken === files ? {} : { scale: 1 }) });
+      taken = files;
     }, (error) => {
       if (mine !== times) return;
       said.textContent = "";
@@ -110,13 +126,13 @@ export function folder(app, complain) {
 
   function draw(found) {
     shown = found.folder;
-    const taken = found.entries.filter((entry) => entry.taken);
-    const left = found.entries.length - taken.length;
+    const own = found.entries.filter((entry) => entry.taken);
+    const left = found.entries.length - own.length;
     const pairs = found.stations.filter((each) => each.horizontal.length === 2);
     const upright = pairs.filter((each) => each.vertical).length;
     said.textContent = "";
     summary.textContent = [
-      counted(taken.length, t("{n} record taken."), t("{n} records taken.")), counted(left, t("{n} entry not taken."), t("{n} entries not taken.")),
+      counted(own.length, t("{n} record taken."), t("{n} records taken.")), counted(left, t("{n} entry not taken."), t("{n} entries not taken.")),
       t("Recordings: {n}, with two horizontal components: {pairs}, of these with a vertical one, too: {upright}.", { n: found.stations.length, pairs: pairs.length, upright }),
     ].join(" ");
     rows.replaceChildren(tableOf(HEAD.map((text) => subscript(text.replace("{unit}", unitIn("acceleration", "kN").name))), found.entries.map(row)));
@@ -124,7 +140,7 @@ export function folder(app, complain) {
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
     notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
     findings.replaceChildren(...found.findings.map((text) => h("li", {}, text)));
-    upwards.hidden = !taken.some((entry) => entry.vertical);
+    upwards.hidden = !own.some((entry) => entry.vertical);
   }
 
   function row(entry) {
@@ -163,11 +179,17 @@ export function folder(app, complain) {
       { hint: t("up to {many} files, {together} MB together and {most} MB each", { many, together: together / 1e6, most: most / 1e6 }) }),
     field("given.files", t("Or files, or a ZIP archive"), input({ id: "files" }),
       { hint: t("AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS, GeoNet; PEER’s search results or a flatfile among them give magnitude, distance and soil") }),
-    select("given.units", t("Unit of the acceleration"), UNITS, "", (value) => (unit = value), { hint: t("of files that do not state it") }),
-    box("given.dt", t("Sampling step"), undefined, (value) => (step = value), { unit: "s", hint: t("of files that do not state it") }),
+    select("given.units", t("Unit of the acceleration"), UNITS, "", (value) => {
+      unit = value;
+      if (last) give(last);
+    }, { hint: t("of files that do not state it") }),
+    box("given.dt", t("Sampling step"), undefined, (value) => {
+      step = value;
+      if (last) give(last);
+    }, { unit: "s", hint: t("of files that do not state it") }),
     said, upwards, trouble(),
     h("p", { class: "help" }, t("The records stay on the server until it is restarted or needs the space; a link does not contain them.")));
-  return { element, report, refresh };
+  return { element, report, refresh, give };
 }
 
 function subscript(text) {

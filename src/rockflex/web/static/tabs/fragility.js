@@ -98,7 +98,7 @@ export default function fragilityTab(app) {
 
   function refresh() {
     suites.refresh();
-    labels.setValue(choice().models, app.state.bouc_wen !== undefined);
+    labels.setValue(choice().models, app.state);
     measure.setValue(choice().measure);
     limit.setValue(choice().limit);
     rotation.hidden = choice().limit !== "rotation";

@@ -2,7 +2,7 @@
 
 import { alternatives } from "../alternatives.js";
 import { bracket } from "../axes.js";
-import { overTime } from "../chart.js";
+import { overTime, withTime } from "../chart.js";
 import { checksTable, limitsForm } from "../checks.js";
 import { yields } from "../choices.js";
 import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
@@ -10,7 +10,7 @@ import { select, slider } from "../form.js";
 import { downloads, reports } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { project } from "../project.js";
-import { recordSet } from "../set.js";
+import { OF_STANDING, recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { language, t } from "../texts.js";
 import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, outputsOf, titled, valueIn } from "../units.js";
@@ -26,13 +26,14 @@ const PANELS = [
   ["displacement", "total_top_displacement", t("Displacement of the top"), 118],
   ["element", "element_force", t("Force of an element"), 118, [["element_force", "{model}"]]],
   ["base_moment", "base_moment", t("Base moment"), 118],
-  ["base_shear", "base_shear", t("Base shear"), 134],
+  ["base_shear", "base_shear", t("Base shear"), 118],
 ];
 const DISPLACEMENTS = [
   ["total_top_displacement", t("relative to the ground")],
   ["top_displacement", t("relative to the rotating base")],
 ];
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
+const FORCES = ["base_moment", "base_shear"]; // which a rigid block has not
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
   ["figure", t("Figure (SVG)")], ["animation", t("Animation (GIF)")], ["histories", t("Histories (CSV)")],
@@ -103,22 +104,24 @@ export default function responseTab(app) {
     const spans = uplifts(first);
     // Of the element whose loop is drawn, with its number in the form.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = titled(`F_${view.element + 1} [{unit}]`, "force");
-    panels.forEach(([, chart, parts], p) => {
+    const drawn = panels.map(([key, chart, parts]) => {
       const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, name], k) => ({
         x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: name.replace("{model}", m.label), ...m.look,
         width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
       })));
-      chart.element.hidden = !series.length;
-      chart.set({
-        series, spans, xRange: [0, view.end],
-        ticks: p === 0 ? first.impact_times : [],
-        vlines: falls.map((x, i) => ({ x, color: "error", label: p + i === 0 ? t("falls") : "" })),
-      });
+      chart.element.hidden = !series.length || (FORCES.includes(key) && !series.some(({ y }) => y.some(Boolean)));
+      return series;
     });
+    withTime(charts);
+    charts.forEach((chart, p) => chart.set({
+      series: drawn[p], spans, xRange: [0, view.end],
+      ticks: p === 0 ? first.impact_times : [],
+      vlines: falls.map((x, i) => ({ x, color: "error", label: p + i === 0 ? t("falls") : "" })),
+    }));
     const lifting = [...view.models, ...ghosts].filter((m) => m.lifts);
     loop.set(lifting.map((m) => (
       { t: m.t, x: m.scaled.rotation, y: m.scaled.base_moment, until: m.fall_time ?? Infinity, label: m.label, look: m.look })));
-    loop.chart.element.parentElement.hidden = !lifting.length;
+    loop.chart.element.parentElement.hidden = charts[panels.findIndex(([name]) => name === "base_moment")].element.hidden || !lifting.length;
     elements.set(view);
     energy.set(view);
     keys.replaceChildren(legend([...view.models, ...ghosts].map((m) => ({ label: m.label, ...m.look }))));
@@ -134,7 +137,7 @@ export default function responseTab(app) {
   // The displacement to plot: the total one, if it is known and no other was chosen.
   function choose(answer) {
     const known = answer.models.every((m) => m.scaled.total_top_displacement);
-    seen.hidden = !known;
+    seen.hidden = !known || !answer.models.some((m) => m.top_displacement.some(Boolean));
     const key = known ? seen.querySelector("select").value : "top_displacement";
     for (const m of [...answer.models, ...ghosts]) m.scaled.displacement = m.scaled[key];
     const [, chart] = panels.find(([name]) => name === "displacement");
@@ -275,21 +278,22 @@ const listed = (words) => new Intl.ListFormat(language).format(words);
 
 function table(view) {
   const held = view.elements.length > 0;
+  const shown = PEAKS.filter((name) => name === "max_rotation" || view.models.some((m) => m.peaks[name]));
   const lifting = view.models.filter((m) => m.lifts);
   const standing = lifting.filter((m) => m.status !== "overturned");
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
   const last = [...(held ? [RESIDUAL] : []), ...(view.ground?.slides ? outputsOf("sliding") : []),
     ...(view.ground?.springs.length ? outputsOf("springs") : [])];
-  const meant = [`${explainedOutputs([...PEAKS, ...last])}.`,
+  const meant = [`${explainedOutputs([...shown, ...last])}.`,
     ...(fixed.length ? [t("In brackets: relative to {reference}.", { reference: listed(fixed) })] : [])];
-  const head = [t("Model"), t("Outcome"), ...PEAKS.map(headed), t("Impacts"), "θ_max/θ_nom", ...last.map(headed)];
+  const head = [t("Model"), t("Outcome"), ...shown.map(headed), t("Impacts"), "θ_max/θ_nom", ...last.map(headed)];
   return [
-    tableOf(head.map(symbol), view.models.map((m) => row(m, view, last))),
+    tableOf(head.map(symbol), view.models.map((m) => row(m, view, shown, last))),
     h("p", { class: "hint" }, symbol(meant.join(" "))),
   ];
 }
 
-function row(m, view, last) {
+function row(m, view, shown, last) {
   const fell = m.status === "overturned";
   const fixed = reference(view, m);
   const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
@@ -297,20 +301,20 @@ function row(m, view, last) {
   const outcome = fell ? t("overturned at {time}", { time: inUnit(m.peaks.end_time, "time") }) : m.lifts ? STATUS[m.status] : t("fixed base");
   const cell = (name) => {
     const value = m.peaks[name];
-    if (value === null || (name === "max_rotation" && fell)) return h("td", { "data-name": name }, "–");
+    if (value === null || (fell && OF_STANDING.includes(name))) return h("td", { "data-name": name }, "–");
     const text = outputIn(name, value) + (COMPARED.includes(name) ? share(name) : "");
     const title = t("at {time}", { time: inUnit(m.peaks[`time_of_${name}`], "time") });
     return h("td", { "data-name": name, "data-value": value, title, class: value < 0 ? "overturned" : null }, text);
   };
   // What friction or a lack of weight can leave; a fixed base has no rotation.
   const final = (name) => {
-    const value = name === RESIDUAL && !m.lifts ? null : m.peaks[name];
+    const value = name === RESIDUAL && (!m.lifts || fell) ? null : m.peaks[name];
     return h("td", { "data-name": name, "data-value": value }, outputIn(name, value));
   };
   return h("tr", { "data-model": m.label },
     h("th", { scope: "row" }, m.label),
     h("td", { class: m.status, "data-name": "status" }, outcome),
-    PEAKS.map(cell),
+    shown.map(cell),
     h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
     h("td", {}, m.lifts && !fell ? inUnit(m.peaks.max_rotation / view.nominal, "share", 3) : "–"),
     last.map(final));

@@ -1,6 +1,6 @@
 // The choices of the runs: models, free vibration, impact law, and whether the superstructure yields.
 
-import { models, yields } from "../choices.js";
+import { isBlock, models, yields } from "../choices.js";
 import { h, symbol } from "../dom.js";
 import { select, slider, tableField, trouble } from "../form.js";
 import { t } from "../texts.js";
@@ -63,7 +63,8 @@ export function runs(app, suggested) {
 
   function refresh() {
     const { state } = app;
-    labels.setValue(state.models, state.bouc_wen !== undefined);
+    labels.setValue(state.models, state);
+    yielding.hidden = isBlock(state.structure);
     free.setValue(state.free_vibration);
     const law = chosen(state);
     impact.setValue(law ? key(law) : "");

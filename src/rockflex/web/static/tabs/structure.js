@@ -59,7 +59,6 @@ export default function structureTab(app) {
     app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
   }
 
-  // A rigid block has no modes, and all models but one need some.
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
     if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } };
@@ -201,7 +200,7 @@ export default function structureTab(app) {
       view.warnings.length
         ? h("div", { class: "warning", id: "warnings", role: "alert" }, view.warnings.map((text) => h("p", {}, text))) : "",
       view.freedoms ? h("p", { class: "hint", id: "freedoms" }, view.freedoms) : "",
-      pictures(view),
+      view.kind === "block" ? "" : pictures(view),
       h("dl", { class: "values" }, view.properties.map(parameter)),
       view.section.length ? h("h2", {}, t("Cross-section")) : "",
       view.section.length ? h("dl", { class: "values", id: "section" }, view.section.map(parameter)) : "",
@@ -225,7 +224,7 @@ export default function structureTab(app) {
     shown.resume();
     load();
   }
-  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs) };
+  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs), drop: ([file]) => saved.take(file) };
 }
 
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
