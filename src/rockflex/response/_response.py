@@ -72,6 +72,15 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 rotation=text("residual_rotation"),
             )
         )
+    if peaks["status"] == "overturned" and is_for_small_rotations(model):
+        found.append(
+            translated(
+                "{model} is for small rotations, but decides here that the structure overturns. Let a complete model "
+                "on rigid ground decide, such as {complete}.",
+                model=model,
+                complete=complete_model_label(model),
+            )
+        )
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
         found.append(
             translated(
@@ -136,10 +145,14 @@ def complete_model_label(model: str) -> str:
     return "rigid-C" if model == "rigid" else "MDOF-C"
 
 
+def is_for_small_rotations(model: Any) -> Any:
+    """Return whether a model, or each of many, is a simplified one, by its label."""
+    return "-C" not in model if isinstance(model, str) else ~model.astype(str).str.contains("-C", regex=False)
+
+
 def leaves_range(model: Any, balance_ratio: Any, rotation: Any) -> Any:
     """Return whether a run of a simplified model, or of many, went beyond α without overturning."""
-    small = "-C" not in model if isinstance(model, str) else ~model.astype(str).str.contains("-C", regex=False)
-    return small & (balance_ratio > 1.0) & (rotation < FALLEN)
+    return is_for_small_rotations(model) & (balance_ratio > 1.0) & (rotation < FALLEN)
 
 
 Quantity = TypeVar("Quantity")
