@@ -28,6 +28,7 @@ from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
 
 FALLEN = 1.57  # rad: an overturned run has a status of its own
+NEGLIGIBLE = 0.05  # of the base shear, the push of leaning columns that needs no word
 BARELY_LESS = 0.25  # of the velocity that a restitution takes, what the modes do not give back
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
@@ -60,6 +61,15 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "A tendon carries more than its yield force, up to {ratio:.4g} times it. It stays elastic in the "
                 "model, so the results are not valid. Give it a post_yield_ratio.",
                 ratio=peaks["tendon_utilisation"],
+            )
+        )
+    if peaks["leaning_push"] > NEGLIGIBLE and peaks["status"] != "overturned":
+        found.append(
+            translated(
+                "The leaning columns push the floors with up to {percent:.3g} % of the base shear as they lean with θ, "
+                "which is neglected: V_b, drifts and floor accelerations are off by about as much. Use a model with "
+                "P-Δ of the floors, or give these columns less weight.",
+                percent=100.0 * peaks["leaning_push"],
             )
         )
     if peaks["may_fall"]:
@@ -272,6 +282,7 @@ class Response(HtmlTable, Value):
     residual_slip: float
     max_edge_uplift: float
     max_edge_settlement: float
+    leaning_push: float
     n_uplifts: int
     n_impacts: int
     guarded_impacts: float
