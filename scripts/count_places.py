@@ -19,7 +19,7 @@ OPTION = "free_vibration"
 FIELDS = ("rupture_elongation", "initial_force")
 OUTPUTS = ("max_slip", "residual_slip")
 HEADINGS = ("x_end", "slip_end", "slip left")  # of the slip that is left, today and before
-LAWS = {"VVELSimplified", "VVELComplete", "Restitution", "SidedRestitution"}
+LAWS = {"VVELSimplified", "VVELComplete", "Restitution", "AngularMomentum", "PivotImpulse", "SidedRestitution"}
 ELEMENTS = {
     "Tendon", "YieldingDissipator", "ViscousDamper", "FrictionDamper", "ElementLaw", "BaseElement", "Attachment",
     "YieldingStory", "Element", "ElasticElement", "ViscousElement", "YieldingElement", "FrictionElement", "LawElement",

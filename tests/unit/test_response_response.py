@@ -260,7 +260,8 @@ def test_a_simplified_run_beyond_the_balance_rotation_warns():
         FRAME, rf.quiet_motion(1.0), "2DOF-S", initial=rf.InitialState(rotation=3.0 * balance), free_vibration=9.0
     )
     assert fell.status == "overturned"
-    assert not fell.warnings
+    (text,) = fell.warnings
+    assert "such as MDOF-C" in text
 
 
 def test_a_run_that_ends_during_the_fall_says_so():
@@ -282,3 +283,19 @@ def test_a_run_that_ends_during_the_fall_says_so():
     assert rf.simulate(block, rf.quiet_motion(0.02), "rigid", "peaks", initial=start).may_fall
     table = rf.simulate_many(block, rf.half_sine_pulse(8.0, 0.6), ["rigid", "rigid-C"])
     assert table["may_fall"].all()
+
+
+def test_leaning_columns_whose_push_counts_are_told():
+    """Σ l_i g θ over V_b; the wall alone has none."""
+    wall = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, period=1.0, aspect_ratio=8.0, damping_ratio=0.02)
+    motion = rf.load_suite("el-centro-1940")[0].scaled(1.5)
+    shares = {}
+    for mass in (0.0, 20e3, 60e3):
+        run = rf.simulate(rf.Leaning(wall, mass), motion, output="peaks")
+        shares[mass] = run.leaning_push
+        assert run.leaning_push == pytest.approx(5 * mass * 9.81 * run.max_rotation / run.max_base_shear, rel=1e-12)
+        assert any("leaning columns push" in text for text in run.warnings) == (run.leaning_push > 0.05)
+    assert shares[0.0] == 0.0
+    assert shares[20e3] < 0.05 < shares[60e3]
+    table = rf.simulate_many([rf.Leaning(wall, 60e3), wall], motion)
+    assert table["leaning_push"].tolist() == [shares[60e3], 0.0]

@@ -345,18 +345,18 @@ RUNS = pd.DataFrame(
 
 
 def test_only_runs_that_rock_and_stand_count() -> None:
-    assert count_pivot_lifts(RUNS) == [PivotLifts("A", "MDOF-S", 2, 1), PivotLifts("B", "MDOF-S", 1, 0)]
+    assert count_pivot_lifts(RUNS) == [PivotLifts("A", "MDOF-S", 2, 1, overturned=1), PivotLifts("B", "MDOF-S", 1, 0)]
 
 
 def test_widths_of_a_design_are_counted_together_and_pairs_by_model() -> None:
     assert count_pivot_lifts(KINDS["design"].runs(RUNS.assign(tendon="none"))) == [
-        PivotLifts("Designs, tendons: none", "MDOF-S", 3, 1)
+        PivotLifts("Designs, tendons: none", "MDOF-S", 3, 1, overturned=1)
     ]
     names = {"status": "status_mdof", "min_vertical_reaction": "min_vertical_reaction_mdof"}
     pairs = RUNS.rename(columns=names).drop(columns=["structure", "model"])
     pairs = pairs.assign(status_2dof="rocking", min_vertical_reaction_2dof=-1.0)
     lifts = count_pivot_lifts(KINDS["population"].runs(pairs))
-    assert lifts == [PivotLifts("Population", "MDOF-S", 3, 1), PivotLifts("Population", "2DOF-S", 6, 6)]
+    assert lifts == [PivotLifts("Population", "MDOF-S", 3, 1, overturned=1), PivotLifts("Population", "2DOF-S", 6, 6)]
 
 
 def test_flexural_frames_would_lift_often_and_shear_frames_do_not() -> None:
@@ -380,4 +380,13 @@ def test_runs_beyond_the_balance_rotation_are_counted_and_told() -> None:
     assert [each.beyond for each in count_pivot_lifts(runs)] == [1, 1]
     assert "θ passes α" in str(count_pivot_lifts(runs)[1])
     assert "such as rigid-C" in str(count_pivot_lifts(runs.assign(model="rigid"))[1])
-    assert [each.beyond for each in count_pivot_lifts(runs.assign(model="MDOF-C-SI"))] == [0, 0]
+    complete = count_pivot_lifts(runs.assign(model="MDOF-C-SI"))
+    assert [(each.beyond, each.overturned) for each in complete] == [(0, 0), (0, 0)]
+
+
+def test_runs_that_overturn_by_a_simplified_model_or_may_still_fall_are_counted_and_told() -> None:
+    first, second = count_pivot_lifts(RUNS.assign(may_fall=[True, False, True, None, False, False]))
+    assert (first.falling, first.overturned, second.falling, second.overturned) == (1, 1, 0, 0)
+    assert "may still fall" in str(first)
+    assert "overturn by a model for small rotations" in str(first)
+    assert not second.warnings

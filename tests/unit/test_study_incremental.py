@@ -92,6 +92,7 @@ def test_unsolved_runs_say_nothing():
     assert (len(outcomes), found.first_overturning_scale) == (5, 8.0)
 
 
+@pytest.mark.filterwarnings("ignore:rigid is for small rotations")
 def test_ladder_of_a_block_is_what_overturning_scales_finds():
     runs = run_incremental(BLOCK, PULSE, "rigid", 0.5, 8.0, 1.05, 1e-4)
     found = rf.overturning_scales(BLOCK, PULSE, rising_scales(0.5, 8.0, 1.05), "rigid", tolerance=1e-4)

@@ -183,6 +183,11 @@ OUTPUTS: Mapping[str, Output] = {
         "edge down", "displacement", "how far an edge of the base sinks into the ground", "; zero on rigid ground",
         of="springs",
     ),
+    "leaning_push": Output(
+        "Σ l g θ/V_b", "ratio", "push of leaning columns on the floors over the base shear",
+        ", at the largest |θ| and the largest base shear; zero without leaning mass. The push is neglected, and above "
+        "0.05 a warning says so",
+    ),
     "n_uplifts": Output(
         "uplifts", "count", "number of uplifts",
         ". An initial rotation does not count as one, so there can be one more impact than uplifts. On springs: how "

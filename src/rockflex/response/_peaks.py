@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex.engine.solution import Solution
 from rockflex.foundation.arrays import Array, Bools
+from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element_states import plastic_stretches
 from rockflex.models._elements import CLOSED
 from rockflex.models._named_quantities import (
@@ -29,6 +30,12 @@ from rockflex.models._values_at_states import quantities_at_states
 from rockflex.structure._rocking import RockingProperties
 
 LAST = 1e-9  # relative: a rotation as close to the largest one is it
+
+
+def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> Any:
+    """Return the push Σ l_i g |θ| of leaning columns over the base shear, for largest values of one run or of many."""
+    push = properties.leaning_mass * GRAVITY * np.asarray(rotation)
+    return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
 
 
 def may_fall(

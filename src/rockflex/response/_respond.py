@@ -25,6 +25,7 @@ from rockflex.response._peaks import (
     element_peaks,
     largest_edge_moves,
     largest_rotations,
+    leaning_push,
     may_fall,
 )
 from rockflex.response._response import PEAKS, Response
@@ -62,6 +63,7 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         max_edge_uplift=uplift,
         max_edge_settlement=settlement,
+        leaning_push=float(leaning_push(p, rotation, known["max_base_shear"])),
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
@@ -179,6 +181,10 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         found[name] = np.where(has_top > 0.0, found[name], np.nan)
     rocks = (solutions.n_uplifts > 0) | (solutions.n_impacts > 0) | (peaks["rotation"] > 0.0)
     lever = np.maximum(np.sin(left), np.sin(right)) if model.complete else np.maximum(left, right)
+    leaning = np.zeros(runs)
+    for k, each in enumerate(models):
+        if each.properties.leaning_mass:
+            leaning[k] = leaning_push(each.properties, peaks["rotation"][k], peaks["base_shear"][k])
     nothing, never = np.zeros(runs), np.zeros(runs, dtype=np.bool_)
     return found | {
         "status": np.where(solutions.overturned, 2, rocks.astype(np.int64)),
@@ -192,6 +198,7 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
         **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
+        "leaning_push": leaning,
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "guarded_impacts": solutions.guarded_impacts,

@@ -28,6 +28,7 @@ from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
 
 FALLEN = 1.57  # rad: an overturned run has a status of its own
+NEGLIGIBLE = 0.05  # of the base shear, the push of leaning columns that needs no word
 BARELY_LESS = 0.25  # of the velocity that a restitution takes, what the modes do not give back
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
@@ -62,6 +63,15 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 ratio=peaks["tendon_utilisation"],
             )
         )
+    if peaks["leaning_push"] > NEGLIGIBLE and peaks["status"] != "overturned":
+        found.append(
+            translated(
+                "The leaning columns push the floors with up to {percent:.3g} % of the base shear as they lean with θ, "
+                "which is neglected: V_b, drifts and floor accelerations are off by about as much. Use a model with "
+                "P-Δ of the floors, or give these columns less weight.",
+                percent=100.0 * peaks["leaning_push"],
+            )
+        )
     if peaks["may_fall"]:
         found.append(
             translated(
@@ -70,6 +80,15 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 'Continue the run with free_vibration="settle".',
                 time=peaks["end_time"],
                 rotation=text("residual_rotation"),
+            )
+        )
+    if peaks["status"] == "overturned" and is_for_small_rotations(model):
+        found.append(
+            translated(
+                "{model} is for small rotations, but decides here that the structure overturns. Let a complete model "
+                "on rigid ground decide, such as {complete}.",
+                model=model,
+                complete=complete_model_label(model),
             )
         )
     if leaves_range(model, peaks["balance_ratio"], peaks["max_rotation"]):
@@ -136,10 +155,14 @@ def complete_model_label(model: str) -> str:
     return "rigid-C" if model == "rigid" else "MDOF-C"
 
 
+def is_for_small_rotations(model: Any) -> Any:
+    """Return whether a model, or each of many, is a simplified one, by its label."""
+    return "-C" not in model if isinstance(model, str) else ~model.astype(str).str.contains("-C", regex=False)
+
+
 def leaves_range(model: Any, balance_ratio: Any, rotation: Any) -> Any:
     """Return whether a run of a simplified model, or of many, went beyond α without overturning."""
-    small = "-C" not in model if isinstance(model, str) else ~model.astype(str).str.contains("-C", regex=False)
-    return small & (balance_ratio > 1.0) & (rotation < FALLEN)
+    return is_for_small_rotations(model) & (balance_ratio > 1.0) & (rotation < FALLEN)
 
 
 Quantity = TypeVar("Quantity")
@@ -259,6 +282,7 @@ class Response(HtmlTable, Value):
     residual_slip: float
     max_edge_uplift: float
     max_edge_settlement: float
+    leaning_push: float
     n_uplifts: int
     n_impacts: int
     guarded_impacts: float

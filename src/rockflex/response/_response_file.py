@@ -56,7 +56,7 @@ PROPERTIES = (
     "translational_inertia",
 )
 KNOWN_OR_NOT = ("top_height", "base_mass")
-LATER: dict[str, Any] = {"guarded_impacts": 0.0, "may_fall": False}  # what older files do not have
+LATER: dict[str, Any] = {"guarded_impacts": 0.0, "may_fall": False, "leaning_push": 0.0}  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")

@@ -12,7 +12,7 @@ from rockflex.foundation.cases import runs_by_case
 from rockflex.foundation.language import translated
 from rockflex.response._outputs import outputs_of
 from rockflex.response._respond import BY_STORY, MAX_OF_STORIES, NAMES
-from rockflex.response._response import Response, complete_model_label, leaves_range
+from rockflex.response._response import Response, complete_model_label, is_for_small_rotations, leaves_range
 from rockflex.structure._rocking import RockingProperties
 
 if TYPE_CHECKING:
@@ -123,7 +123,10 @@ REACTION = "min_vertical_reaction"
 
 
 class PivotLifts(NamedTuple):
-    """Numbers of runs of a case that rock and stand: all, whose pivot would lift, beyond α, and that may fall."""
+    """Numbers of runs of a case that rock and stand: all, whose pivot would lift, beyond α, and that may fall.
+
+    The last number is that of runs that overturn by a model for small rotations.
+    """
 
     structure: str
     model: str
@@ -131,6 +134,7 @@ class PivotLifts(NamedTuple):
     lifting: int
     beyond: int = 0
     falling: int = 0
+    overturned: int = 0
 
     def __str__(self) -> str:
         return " ".join(self.warnings)
@@ -176,6 +180,17 @@ class PivotLifts(NamedTuple):
                     n=self.rocking,
                 )
             )
+        if self.overturned:
+            found.append(
+                translated(
+                    "{structure}, {model}: {k} runs overturn by a model for small rotations. Let a complete model on "
+                    "rigid ground decide, such as {complete}.",
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.overturned,
+                    complete=complete_model_label(self.model),
+                )
+            )
         return found
 
 
@@ -187,12 +202,13 @@ def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
     runs
         A table with one row a run.
     """
-    standing = runs[runs["status"] == "rocking"]
     found: list[PivotLifts] = []
-    for structure, model, each in runs_by_case(standing):
+    for structure, model, every in runs_by_case(runs[runs["status"].isin(("rocking", "overturned"))]):
+        each = every[every["status"] == "rocking"]
+        fell = len(every) - len(each) if is_for_small_rotations(model) else 0
         past = 0  # where a table of an earlier version does not tell
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())
         falling = int(each["may_fall"].sum()) if "may_fall" in each else 0
-        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past, falling))
+        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past, falling, fell))
     return found

@@ -1,6 +1,7 @@
 """Rocking and overturning spectra."""
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -16,7 +17,7 @@ from rockflex.foundation.values import Value
 from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import Model, parse_model
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.response._response import Response
+from rockflex.response._response import Response, complete_model_label
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._towers import rigid_block
 from rockflex.studies._arguments import (
@@ -43,7 +44,7 @@ def rocking_spectrum(
     motion: GroundMotion,
     slendernesses: Sequence[float],
     periods: Sequence[float],
-    model: str | Model = "rigid",
+    model: str | Model = "rigid-C",
     impact: ImpactLaw | None = None,
     free_vibration: float | Literal["settle"] = "settle",
     workers: SupportsIndex | None = None,
@@ -66,7 +67,7 @@ def rocking_spectrum(
     periods
         2π/p in s, positive.
     model
-        "rigid" or "rigid-C".
+        "rigid-C", or "rigid", which warns where it decides that a block overturns or passes α.
     impact
         None for Housner's coefficient of each block, 1 - 1.5 sin² α; or `Restitution(e)` for all blocks.
     free_vibration
@@ -97,7 +98,7 @@ def rocking_spectrum(
     >>> rf.rocking_spectrum(pulse, [0.2], [2.0, 4.0])[["period", "status", "relative_rotation"]].round(3)
        period      status  relative_rotation
     0     2.0  overturned              7.854
-    1     4.0     rocking              0.272
+    1     4.0     rocking              0.273
     """
     alphas, times = (
         checked_positive_numbers("slendernesses", slendernesses, "rad"),
@@ -122,6 +123,7 @@ def rocking_spectrum(
         ground=ground,
         progress=progress,
     ).reset_index(drop=True)
+    _warn_of_falls(chosen, fell=bool((table["status"] == "overturned").any() or (table["balance_ratio"] > 1.0).any()))
     slenderness, period = np.repeat(alphas, len(times)), np.tile(times, len(alphas))
     import pandas as pd
 
@@ -162,7 +164,7 @@ class OverturningScales(Value):
     >>> import rockflex as rf
     >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0), "2DOF-S")
+    >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0), "2DOF-C")
     >>> found.impacts
     0
     """
@@ -176,7 +178,7 @@ def overturning_scales(
     structure: RockingStructure | RockingProperties,
     motion: GroundMotion,
     scales: Sequence[float],
-    model: str | Model = "rigid",
+    model: str | Model = "rigid-C",
     impact: ImpactLaw | None = None,
     tolerance: float = 1e-6,
     work_limit: WorkLimit = "default",
@@ -191,8 +193,11 @@ def overturning_scales(
 
     Parameters
     ----------
-    structure, model, impact, ground
+    structure, impact, ground
         As in `simulate`; a rigid block from `rigid_block`, for instance.
+    model
+        As in `simulate`. By default large rotations are those of a complete model, since they decide the fall; one for
+        small rotations, such as "rigid", warns.
     motion
         The ground motion at the scale 1.
     scales
@@ -216,21 +221,22 @@ def overturning_scales(
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0))
     >>> round(found.lowest, 3), found.impacts
-    (2.372, 1)
+    (2.281, 1)
     """
     tried = _checked_search_scales("scales", scales)
     width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
     check_motion_argument(motion)
-    return _search_overturning_scales(
-        _run_of_spectrum(structure, model, impact, work_limit, ground), motion, tried, width
-    )
+    run = _run_of_spectrum(structure, model, impact, work_limit, ground)
+    found = _search_overturning_scales(run, motion, tried, width)
+    _warn_of_falls(parse_model(model), fell=not math.isnan(found.lowest))
+    return found
 
 
 def overturning_spectrum(
     structure: RockingStructure | RockingProperties,
     pulse: Callable[[float, float], GroundMotion],
     frequency_ratios: Sequence[float],
-    model: str | Model = "rigid",
+    model: str | Model = "rigid-C",
     impact: ImpactLaw | None = None,
     relative_amplitudes: Sequence[float] | None = None,
     tolerance: float = 1e-6,
@@ -242,12 +248,15 @@ def overturning_spectrum(
     """Smallest amplitude at which a pulse overturns a structure, as a function of the frequency of the pulse.
 
     With p² = L_0^r g/I_θ and α = m_tot B/L_0^r, the spectrum of a rigid block in ω_g/p and a_p/(g α) is the same for
-    all sizes and slendernesses with the same impact (Zhang & Makris 2001, J. Struct. Eng. 127(5), 501-511).
+    all sizes and slendernesses with the same impact (Zhang & Makris 2001, J. Struct. Eng. 127(5), 501-511), with the
+    model "rigid" and for slender blocks.
 
     Parameters
     ----------
-    structure, model, impact, ground
+    structure, impact, ground
         As in `simulate`.
+    model
+        As in `overturning_scales`.
     pulse
         Function that returns a pulse for an amplitude in m/s² and a period 2π/ω_g in s, such as `one_sine_pulse`; for
         half a sine ``lambda amplitude, period: half_sine_pulse(amplitude, period / 2)``. It chooses the time step:
@@ -285,7 +294,7 @@ def overturning_spectrum(
     >>> table = rf.overturning_spectrum(block, rf.one_sine_pulse, [3.0], relative_amplitudes=(1.0, 10.0))
     >>> table[["frequency_ratio", "lowest"]].round(3)
        frequency_ratio  lowest
-    0              3.0   1.387
+    0              3.0   1.382
     """
     ratios = checked_positive_numbers("frequency_ratios", frequency_ratios, "")
     tried = _checked_search_scales("relative_amplitudes", SCAN if relative_amplitudes is None else relative_amplitudes)
@@ -312,9 +321,19 @@ def overturning_spectrum(
         )
     import pandas as pd
 
+    _warn_of_falls(parse_model(model), fell=any(not math.isnan(row.lowest) for row in rows))
     table = pd.DataFrame(rows).assign(frequency_ratio=ratios, period=periods)
     table["amplitude"] = table["lowest"] * unit
     return table[["frequency_ratio", "period", "lowest", "amplitude", "highest_standing", "impacts"]]
+
+
+def _warn_of_falls(model: Model, *, fell: bool) -> None:
+    if fell and not model.complete:
+        warnings.warn(
+            f"{model.label} is for small rotations, but decides here what overturns: boundaries are off by several per "
+            f"cent. Give a complete model, such as {complete_model_label(model.label)}.",
+            stacklevel=3,
+        )
 
 
 Run = Callable[[GroundMotion, float], Response]
