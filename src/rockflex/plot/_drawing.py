@@ -480,11 +480,11 @@ class _Layout:
         y = here.ground - 15.0
         alike = abs(o.left + o.right) < 1e-9 * o.right
         for side, edge in (("B − e", o.right),) if not alike else ():
-            self._write(f"{side} = {_length(edge)}", here.middle + _GAP, y - _GAP, va="top", ha="left")
+            self._write(f"{side} = {_length(edge)}", here.middle + _GAP, y - 2.0 * _GAP, va="top", ha="left")
         if alike:
-            self._write(f"B = {_length(o.right)}", here.middle, y - _GAP, va="top", ha="center")
+            self._write(f"B = {_length(o.right)}", here.middle, y - 2.0 * _GAP, va="top", ha="center")
         else:
-            self._write(f"B + e = {_length(-o.left)}", here.middle - _GAP, y - _GAP, va="top", ha="right")
+            self._write(f"B + e = {_length(-o.left)}", here.middle - _GAP, y - 2.0 * _GAP, va="top", ha="right")
         for edge in (o.right,) if alike else (o.left, o.right):
             across = [here.middle, here.middle + here.zoom * edge]
             self._line(across, [y, y])
