@@ -26,7 +26,7 @@ SCRIPTS = {
     "fragility_of_a_frame": ("curves", 0),
     "ida_with_resurrections": ("curves", 0),
 }
-SIZE = 400, 280  # pixels of a thumbnail
+SIZE, DPI = (400, 280), 150  # pixels of a thumbnail, and dots an inch
 PANELS: dict[str, Image.Image] = {}
 
 
@@ -53,7 +53,7 @@ def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dic
         if not any(figure is other for other in shown):
             shown.append(figure)
             path = next(block_vars["image_path_iterator"])
-            figure.savefig(path, dpi=150, bbox_inches="tight")
+            figure.savefig(path, dpi=DPI, bbox_inches="tight")
             paths.append(path)
             if stem in SCRIPTS and SCRIPTS[stem][0] == name:
                 PANELS[stem] = panel(figure, SCRIPTS[stem][1])
@@ -61,12 +61,19 @@ def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dic
 
 
 def panel(figure: Figure, place: int) -> Image.Image:
-    """Return one panel of a figure, with its labels."""
-    box = figure.axes[place].get_tightbbox(FigureCanvasAgg(figure).get_renderer())
-    box = box.transformed(figure.dpi_scale_trans.inverted())
+    """Return one panel of a figure, with its labels; a wide one as high as a thumbnail."""
+    size, axes = figure.get_size_inches(), figure.axes[place]
+    wide = axes.bbox.width / axes.bbox.height
+    figure.set_size_inches(size[0], size[1] * max(0.7 * wide, 1.0))
     content = io.BytesIO()
-    figure.savefig(content, dpi=150, bbox_inches=box.padded(0.05))
-    return Image.open(content).convert("RGB")
+    figure.savefig(content, dpi=DPI)
+    image = Image.open(content).convert("RGB")
+    zoom, edge = DPI / figure.dpi, 0.05 * DPI
+    box = axes.get_tightbbox(FigureCanvasAgg(figure).get_renderer(), bbox_extra_artists=[])
+    left, right, top, bottom = zoom * box.x0, zoom * box.x1, image.height - zoom * box.y1, image.height - zoom * box.y0
+    figure.set_size_inches(*size)
+    ends = max(left - edge, 0), max(top - edge, 0), min(right + edge, image.width), min(bottom + edge, image.height)
+    return image.crop(tuple(map(int, ends)))
 
 
 def write_thumbnails(app: Sphinx) -> None:

@@ -24,7 +24,8 @@ class EveryName(SphinxDirective):
             text = path.read_text("utf-8")
             names = re.findall(r"^   (rockflex\.\S+)$", text, re.MULTILINE)
             lines += [f".. rubric:: {text.partition(chr(10))[0].removeprefix('# ')}", ""]
-            lines += [".. autosummary::", "   :nosignatures:", "", *(f"   {name}" for name in names), ""]
+            shown = (f"~{name}" if name.count(".") == 1 else name for name in names)
+            lines += [".. autosummary::", "   :nosignatures:", "", *(f"   {name}" for name in shown), ""]
         parent = nodes.container()
         self.state.nested_parse(StringList(lines, self.env.docname), 0, parent)
         return parent.children

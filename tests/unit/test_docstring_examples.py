@@ -47,6 +47,12 @@ def test_example_prints_what_it_shows(name, tmp_path, monkeypatch):
     assert runner.failures == 0, report.getvalue()
 
 
+def test_examples_have_78_columns():
+    """So that the reference shows them whole beside its contents."""
+    lines = [f"... {line}" for test in EXAMPLES.values() for each in test.examples for line in each.source.splitlines()]
+    assert [line for line in lines if len(line) > 78] == []
+
+
 @pytest.mark.parametrize("name", [name for name in NAMES if needs_an_example(name)])
 def test_public_name_ends_with_an_example(name):
     sections = SECTION.findall(inspect.getdoc(NAMES[name]))

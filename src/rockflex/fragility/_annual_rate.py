@@ -93,7 +93,8 @@ def annual_rate(
     --------
     >>> import rockflex as rf
     >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
-    >>> found = rf.annual_rate(hazard, rf.LognormalFragility(median=0.5, beta=0.4))
+    >>> found = rf.annual_rate(hazard,
+    ...     rf.LognormalFragility(median=0.5, beta=0.4))
     >>> print(f"{found.rate:.3g}")
     0.000436
     >>> print(f"{found.beyond:.3g}")
@@ -168,7 +169,9 @@ def risk_targeted_median(
     --------
     >>> import rockflex as rf
     >>> hazard = rf.HazardCurve([0.1, 0.2, 0.4, 0.8], [1e-2, 3e-3, 6e-4, 1e-4])
-    >>> print(f"{rf.risk_targeted_median(hazard, dispersion=0.4, target_rate=1e-3, allowed_beyond=0.3):.3g}")
+    >>> median = rf.risk_targeted_median(hazard, dispersion=0.4, target_rate=1e-3,
+    ...     allowed_beyond=0.3)
+    >>> print(f"{median:.3g}")
     0.364
     """
     from scipy.optimize import brentq

@@ -121,8 +121,10 @@ def bootstrap_band(
     --------
     >>> import rockflex as rf
     >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
-    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200, seed=1)
-    >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
+    >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200,
+    ...     seed=1)
+    >>> ends = f"{band.low[0]:.3g} to {band.high[0]:.3g}"
+    >>> print(f"{band.estimate[0]:.3g} from {ends}")
     0.0137 from 0.0118 to 0.0152
     """
     measures, grid = checked_finite_vector("im", im, "one unit"), checked_finite_vector("at", at, "one unit")

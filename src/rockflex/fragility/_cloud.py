@@ -204,7 +204,8 @@ def compare_measures(
     --------
     >>> import rockflex as rf
     >>> import pandas as pd
-    >>> measures = pd.DataFrame({"pga": [2.0, 3.0, 6.0, 5.0], "pgv": [0.2, 0.4, 0.6, 0.8]})
+    >>> measures = pd.DataFrame({"pga": [2.0, 3.0, 6.0, 5.0],
+    ...     "pgv": [0.2, 0.4, 0.6, 0.8]})
     >>> table = rf.compare_measures(measures, [0.004, 0.011, 0.016, 0.026])
     >>> list(table.index)
     ['pgv', 'pga']

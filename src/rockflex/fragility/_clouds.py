@@ -49,7 +49,8 @@ class CloudFits(HtmlTable, Value):
     >>> import rockflex as rf
     >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
-    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid",
+    ...     scales=[0.5, 1.0, 1.5, 2.0])
     >>> (fit,) = rf.fit_clouds(runs, "pga")
     >>> fit.model, fit.measure, fit.n_failed
     ('rigid', 'pga', 0)
@@ -109,9 +110,11 @@ def fit_clouds(
     >>> import rockflex as rf
     >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
-    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid",
+    ...     scales=[0.5, 1.0, 1.5, 2.0])
     >>> (fit,) = rf.fit_clouds(runs, "pga")
-    >>> fit.outcomes.n_no_rocking, fit.outcomes.n_rocking, fit.outcomes.n_overturned
+    >>> found = fit.outcomes
+    >>> found.n_no_rocking, found.n_rocking, found.n_overturned
     (3, 9, 0)
     """
     return [

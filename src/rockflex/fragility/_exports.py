@@ -214,7 +214,8 @@ def write_nrml(
     >>> from pathlib import Path
     >>> import rockflex as rf
     >>> path = Path(tempfile.mkdtemp()) / "fragility.xml"
-    >>> pier = {"tilted": rf.LognormalFragility(0.2, 0.5), "overturned": rf.LognormalFragility(0.5, 0.5)}
+    >>> pier = {"tilted": rf.LognormalFragility(0.2, 0.5),
+    ...     "overturned": rf.LognormalFragility(0.5, 0.5)}
     >>> rf.write_nrml(path, {"pier": pier}, "PGV", levels=[0.05, 2.0]).name
     'fragility.xml'
     >>> print(path.read_text().splitlines()[6].strip())
@@ -335,7 +336,8 @@ def write_pelicun(
     >>> from pathlib import Path
     >>> import rockflex as rf
     >>> path = Path(tempfile.mkdtemp()) / "fragility.csv"
-    >>> pier = {"tilted": rf.LognormalFragility(2.0, 0.5), "overturned": rf.LognormalFragility(5.0, 0.5)}
+    >>> pier = {"tilted": rf.LognormalFragility(2.0, 0.5),
+    ...     "overturned": rf.LognormalFragility(5.0, 0.5)}
     >>> rf.write_pelicun(path, {"pier": pier}, "PGA", levels=[0.5, 20.0]).name
     'fragility.csv'
     >>> print(path.read_text().splitlines()[1])

@@ -295,7 +295,8 @@ class HazardCurve(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> hazard = rf.HazardCurve.from_poe([1.0, 2.0, 4.0], [0.4, 0.1, 0.02], years=50)
+        >>> hazard = rf.HazardCurve.from_poe([1.0, 2.0, 4.0], [0.4, 0.1, 0.02],
+        ...     years=50)
         >>> print(f"1 in {1 / hazard.rate_at(2.0):.0f} years")
         1 in 475 years
         """

@@ -102,7 +102,8 @@ def demand_limit_state(column: str, bound: float) -> LimitState:
     >>> from rockflex.fragility import demand_limit_state
     >>> demand_limit_state("max_ductility", 4.0).label
     'max_ductility > 4'
-    >>> bool(demand_limit_state("max_ductility", 4.0).exceeded({"max_ductility": 5.2, "status": "rocking"}))
+    >>> bool(demand_limit_state("max_ductility",
+    ...     4.0).exceeded({"max_ductility": 5.2, "status": "rocking"}))
     True
     """
 
@@ -128,7 +129,8 @@ def residual_rotation_limit_state(rotation: float) -> LimitState:
     >>> from rockflex.fragility import residual_rotation_limit_state
     >>> residual_rotation_limit_state(0.005).label
     'residual 0.005 rad'
-    >>> bool(residual_rotation_limit_state(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
+    >>> bool(residual_rotation_limit_state(0.005).exceeded({
+    ...     "residual_rotation": -0.007, "status": "rocking"}))
     True
     """
     symbol = rf"|θ_{{\mathrm{{res}}}}|>{rotation:g}\ \mathrm{{rad}}"

@@ -108,7 +108,8 @@ class LogisticFit(HtmlTable, Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+    ...     [False, False, True, False, True, True])
     >>> print(f"{fit.median:.3g}, {fit.dispersion:.3g}")
     0.327, 0.253
     >>> fit.probability([0.2, 0.5]).round(3).tolist()
@@ -218,7 +219,8 @@ def fit_logistic(
     Examples
     --------
     >>> import rockflex as rf
-    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [False, False, True, False, True, True])
+    >>> fit = rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+    ...     [False, False, True, False, True, True])
     >>> print(f"{fit.b0:.3g}, {fit.b1:.3g}")
     4.42, 3.96
     >>> fit.method

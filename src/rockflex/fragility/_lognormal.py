@@ -164,7 +164,8 @@ def fit_capacities(
     Examples
     --------
     >>> import rockflex as rf
-    >>> fit = rf.fit_capacities([0.4, 0.6, 0.9, 1.0], censored=[False, False, False, True])
+    >>> fit = rf.fit_capacities([0.4, 0.6, 0.9, 1.0],
+    ...     censored=[False, False, False, True])
     >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
     0.73, 0.458
     """
@@ -270,7 +271,8 @@ def fit_stripes(
     Examples
     --------
     >>> import rockflex as rf
-    >>> fit = rf.fit_stripes([0.2, 0.4, 0.8], n_exceeding=[1, 4, 9], n_total=[10, 10, 10])
+    >>> fit = rf.fit_stripes([0.2, 0.4, 0.8], n_exceeding=[1, 4, 9],
+    ...     n_total=[10, 10, 10])
     >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
     0.427, 0.539
     """

@@ -60,7 +60,8 @@ class OutcomeProbabilities(Value, Sequence[Array]):
     >>> import rockflex as rf
     >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
     >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
-    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> outcomes = rf.fit_outcomes(im, rotation,
+    ...     [angle > 1.5 for angle in rotation])
     >>> p = outcomes.probabilities(0.5)
     >>> print(f"{p.no_rocking + p.rocking + p.overturning:.3g}")
     1
@@ -125,7 +126,8 @@ class OutcomeFragility(HtmlTable, Value):
     >>> import rockflex as rf
     >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
     >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
-    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> outcomes = rf.fit_outcomes(im, rotation,
+    ...     [angle > 1.5 for angle in rotation])
     >>> print(f"{outcomes.exceedance(0.5, 0.02):.3g}")
     0.747
     >>> outcomes.notes[0]
@@ -232,7 +234,8 @@ class RotationFragility(Value):
     >>> import rockflex as rf
     >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
     >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
-    >>> curve = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation]).curve(0.02)
+    >>> curve = rf.fit_outcomes(im, rotation,
+    ...     [angle > 1.5 for angle in rotation]).curve(0.02)
     >>> print(f"{curve.probability(0.5):.3g}")
     0.747
     """
@@ -342,7 +345,8 @@ def fit_outcomes(
     >>> import rockflex as rf
     >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
     >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
-    >>> outcomes = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation])
+    >>> outcomes = rf.fit_outcomes(im, rotation,
+    ...     [angle > 1.5 for angle in rotation])
     >>> outcomes.n_no_rocking, outcomes.n_rocking, outcomes.n_overturned
     (3, 3, 2)
     >>> outcomes.overturning.method

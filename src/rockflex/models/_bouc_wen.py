@@ -24,10 +24,12 @@ class BoucWen(BoucWenSchema):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> law = rf.BoucWen(yield_displacement=0.02)
-    >>> response = rf.simulate(column, rf.one_sine_pulse(3.0, 1.0), "2DOF-S", bouc_wen=law)
+    >>> response = rf.simulate(column, rf.one_sine_pulse(3.0, 1.0), "2DOF-S",
+    ...     bouc_wen=law)
     >>> response.model
     '2DOF-S-BW'
     """

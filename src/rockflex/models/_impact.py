@@ -225,7 +225,8 @@ class VVELSimplified(RuledLaw):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
     >>> rf.simulate(column, pulse, "2DOF-C", impact=rf.VVELSimplified()).status
@@ -261,7 +262,8 @@ class VVELComplete(RuledLaw):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
     >>> rf.simulate(column, pulse, "2DOF-S", impact=rf.VVELComplete()).status
@@ -309,7 +311,8 @@ class Restitution(RuledLaw):
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
     >>> start = rf.InitialState(rotation=0.1)
-    >>> response = rf.simulate(block, rf.quiet_motion(10.0), "rigid", impact=rf.Restitution(0.9), initial=start)
+    >>> response = rf.simulate(block, rf.quiet_motion(10.0), "rigid",
+    ...     impact=rf.Restitution(0.9), initial=start)
     >>> response.n_impacts
     25
     """

@@ -56,7 +56,8 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
     --------
     >>> import rockflex as rf
     >>> import numpy as np
-    >>> np.savetxt("DEMO.AT2", [0.0, 0.1, -0.2, 0.0], header="NPTS= 4, DT= .0100 SEC", comments="")
+    >>> np.savetxt("DEMO.AT2", [0.0, 0.1, -0.2, 0.0],
+    ...     header="NPTS= 4, DT= .0100 SEC", comments="")
     >>> rf.read_at2("DEMO.AT2")
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """

@@ -43,7 +43,8 @@ class Finding:
     --------
     >>> import rockflex as rf
     >>> from pathlib import Path
-    >>> _ = Path("lab.csv").write_text("time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
+    >>> _ = Path("lab.csv").write_text(
+    ...     "time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
     >>> [print(each) for each in rf.read_motion("lab.csv").metadata.findings][:0]
     quantity: acceleration (label "acc (g)")
     unit: g (label "acc (g)")

@@ -67,12 +67,14 @@ class GroundMotion(HtmlTable, Value):
     >>> import rockflex as rf
     >>> import numpy as np
     >>> t = np.arange(0.0, 2.001, 0.01)
-    >>> motion = rf.GroundMotion(3.0 * np.sin(2.0 * np.pi * t), dt=0.01, name="sine")
+    >>> motion = rf.GroundMotion(3.0 * np.sin(2.0 * np.pi * t), dt=0.01,
+    ...     name="sine")
     >>> motion
     GroundMotion('sine', 201 samples, dt=0.01 s, duration=2 s, pga=3 m/s²)
     >>> round(motion.scaled(2.0).pgv, 3)
     1.909
-    >>> both = rf.GroundMotion([0.0, 2.0, 0.0], dt=0.01, vertical=[0.0, 0.0, -1.5])
+    >>> both = rf.GroundMotion([0.0, 2.0, 0.0], dt=0.01,
+    ...     vertical=[0.0, 0.0, -1.5])
     >>> both.scaled(2.0).pva
     3.0
     """

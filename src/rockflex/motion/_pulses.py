@@ -279,7 +279,8 @@ def mavroeidis_papageorgiou_pulse(
     Examples
     --------
     >>> import rockflex as rf
-    >>> pulse = rf.mavroeidis_papageorgiou_pulse(amplitude=1.0, period=2.0, gamma=1.5, nu=0.0)
+    >>> pulse = rf.mavroeidis_papageorgiou_pulse(amplitude=1.0, period=2.0,
+    ...     gamma=1.5, nu=0.0)
     >>> round(pulse.pgv, 3)
     1.0
     """

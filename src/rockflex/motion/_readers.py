@@ -216,7 +216,8 @@ def read_components(
     --------
     >>> import rockflex as rf
     >>> from pathlib import Path
-    >>> text = "time (s), NS (gal), EW (gal), UD (gal)\n0.00, 0, 0, 0\n0.01, 5, 3, 1\n0.02, -4, 6, 2\n"
+    >>> text = "time (s), NS (gal), EW (gal), UD (gal)\n"
+    >>> text += "0.00, 0, 0, 0\n0.01, 5, 3, 1\n0.02, -4, 6, 2\n"
     >>> _ = Path("station.csv").write_text(text)
     >>> [motion.name for motion in rf.read_components("station.csv")]
     ['station-NS', 'station-EW', 'station-UD']

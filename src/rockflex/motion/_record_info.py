@@ -95,7 +95,8 @@ class RecordInfo:
     Examples
     --------
     >>> import rockflex as rf
-    >>> info = rf.RecordInfo(event="Imperial Valley", year=1940, station="El Centro")
+    >>> info = rf.RecordInfo(event="Imperial Valley", year=1940,
+    ...     station="El Centro")
     >>> motion = rf.GroundMotion([0.0, 1.0, -1.0, 0.0], dt=0.02, metadata=info)
     >>> motion.metadata.year
     1940

@@ -208,7 +208,8 @@ class StationRecord(Value):
     --------
     >>> import rockflex as rf
     >>> station = rf.group_stations(rf.load_suite("fema-p695-far-field"))[0]
-    >>> station.name, [motion.name for motion in station.horizontal], station.vertical
+    >>> station.name, [motion.name
+    ...     for motion in station.horizontal], station.vertical
     ('RSN953', ['FF-1-a', 'FF-1-b'], None)
     """
 
@@ -310,7 +311,8 @@ class RotatedSpectrum(Value):
     --------
     >>> import rockflex as rf
     >>> suite = rf.load_suite("fema-p695-far-field")
-    >>> spectrum = rf.rotated_spectrum(suite["FF-1-a"], suite["FF-1-b"], [0.5, 1.0])
+    >>> spectrum = rf.rotated_spectrum(suite["FF-1-a"], suite["FF-1-b"],
+    ...     [0.5, 1.0])
     >>> spectrum.sa.shape
     (2, 180)
     >>> bool((spectrum.rotd50 < spectrum.rotd100).all())
@@ -382,7 +384,8 @@ def rotated_spectrum(
     >>> import rockflex as rf
     >>> suite = rf.load_suite("fema-p695-far-field")
     >>> spectrum = rf.rotated_spectrum(suite["FF-1-a"], suite["FF-1-b"], [1.0])
-    >>> spectrum.rotd50.round(2), spectrum.rotd100.round(2), spectrum.geometric_mean.round(2)
+    >>> found = spectrum.rotd50, spectrum.rotd100, spectrum.geometric_mean
+    >>> tuple(each.round(2) for each in found)
     (array([9.58]), array([13.06]), array([9.61]))
     """
     one, other = checked_instance("first", first, GroundMotion), checked_instance("second", second, GroundMotion)

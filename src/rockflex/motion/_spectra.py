@@ -142,7 +142,8 @@ class TargetSpectrum(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> target = rf.TargetSpectrum([0.0, 0.1, 0.5, 2.0], [3.0, 7.5, 7.5, 1.875], name="site")
+    >>> target = rf.TargetSpectrum([0.0, 0.1, 0.5, 2.0], [3.0, 7.5, 7.5, 1.875],
+    ...     name="site")
     >>> target
     TargetSpectrum('site', 0 to 2 s, up to 7.5 m/s², ζ = 0.05)
     >>> target.at([0.05, 0.3, 1.0]).round(12)

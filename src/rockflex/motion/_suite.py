@@ -224,7 +224,8 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         --------
         >>> import rockflex as rf
         >>> suite = rf.load_suite("fema-p695-far-field")
-        >>> chosen = suite.select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0), per_event=1, least_ratio=0.9)
+        >>> chosen = suite.select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0),
+        ...     per_event=1, least_ratio=0.9)
         >>> len(chosen.suite), chosen.least_ratio > 0.89
         (7, True)
         """

@@ -55,7 +55,8 @@ class SurveyEntry:
     Examples
     --------
     >>> import rockflex as rf
-    >>> entry = rf.SurveyEntry(file="A-UP.AT2", taken=False, reason="vertical component", name="A-UP")
+    >>> entry = rf.SurveyEntry(file="A-UP.AT2", taken=False,
+    ...     reason="vertical component", name="A-UP")
     >>> entry.taken, entry.reason
     (False, 'vertical component')
     """
@@ -97,7 +98,8 @@ class RecordSurvey(Value):
     --------
     >>> import rockflex as rf
     >>> from pathlib import Path
-    >>> _ = Path("lab.csv").write_text("time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
+    >>> _ = Path("lab.csv").write_text(
+    ...     "time (s), acc (g)\n0.00, 0.0\n0.01, 0.2\n0.02, 0.0\n")
     >>> survey = rf.survey_records(["lab.csv"])
     >>> survey.suite().names, survey.left_out
     (('lab',), ())
@@ -178,7 +180,8 @@ def survey_records(
     >>> from pathlib import Path
     >>> Path("survey").mkdir()
     >>> for name in ("ABC090", "ABC-UP"):
-    ...     _ = Path("survey", f"{name}.AT2").write_text("NPTS= 3, DT= .01 SEC\n0 .1 0\n")
+    ...     _ = Path("survey",
+    ...     f"{name}.AT2").write_text("NPTS= 3, DT= .01 SEC\n0 .1 0\n")
     >>> _ = Path("survey", "notes.txt").write_text("Downloaded in spring\n")
     >>> survey = rf.survey_records("survey")
     >>> survey

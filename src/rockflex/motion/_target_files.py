@@ -94,7 +94,8 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     --------
     >>> import rockflex as rf
     >>> from pathlib import Path
-    >>> _ = Path("site.csv").write_text("period (s), sa (g)\n0.0, 0.3\n0.1, 0.75\n0.5, 0.75\n2.0, 0.1875\n")
+    >>> _ = Path("site.csv").write_text(
+    ...     "period (s), sa (g)\n0.0, 0.3\n0.1, 0.75\n0.5, 0.75\n2.0, 0.1875\n")
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """

@@ -221,7 +221,8 @@ def asce7_site_spectrum(ss: float, s1: float, site: str, tl: float, *, mce: bool
     --------
     >>> import rockflex as rf
     >>> target = rf.asce7_site_spectrum(1.5 * 9.81, 0.6 * 9.81, "C", tl=8.0)
-    >>> (target.at([0.3, 1.0]) / 9.81).round(3)  # 2/3 · 1.2 · 1.5 and 2/3 · 1.4 · 0.6
+    >>> # 2/3 · 1.2 · 1.5 and 2/3 · 1.4 · 0.6
+    >>> (target.at([0.3, 1.0]) / 9.81).round(3)
     array([1.2 , 0.56])
     """
     if not is_one_of(site, (*_FA, "default")):

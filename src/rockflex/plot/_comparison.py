@@ -51,9 +51,11 @@ def plot_comparison(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> tied = rf.Restrained(frame, rf.Tendon(initial_force=100e3, stiffness=5e6))
-    >>> both = rf.compare({"free": frame, "tied": tied}, rf.one_sine_pulse(amplitude=3.0, period=0.8))
+    >>> both = rf.compare({"free": frame, "tied": tied},
+    ...     rf.one_sine_pulse(amplitude=3.0, period=0.8))
     >>> figure = rf.plot_comparison(both, panels=["rotation", "base_moment"])
     >>> [text.get_text() for text in figure.legends[0].get_texts()][:2]
     ['free', 'tied']

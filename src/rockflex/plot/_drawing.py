@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite, checked_instance, checked_positive
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
@@ -42,7 +41,7 @@ from rockflex.plot.animation._scene import (
 from rockflex.response._response import Response
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._base_element import BaseElement
-from rockflex.structure._ground import Ground
+from rockflex.structure._ground import Ground, Springs
 from rockflex.structure._outline import (
     BODY,
     ELEMENT_COLORS,
@@ -131,9 +130,11 @@ def plot_structure(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
-    >>> figure = rf.plot_structure(rf.Restrained(frame, rf.Tendon(initial_force=200e3, stiffness=5e6)))
+    >>> figure = rf.plot_structure(rf.Restrained(frame,
+    ...     rf.Tendon(initial_force=200e3, stiffness=5e6)))
     >>> [text.get_text() for text in figure.axes[0].texts][:2]
     ['Frame of equal stories, $T_1$ = 0.6 s', 'Tendon, 200 kN, 5 MN/m, x = 0 m']
     """
@@ -153,13 +154,14 @@ def plot_structure(
                     field=name,
                 )
         p = structure if isinstance(structure, RockingProperties) else structure.rocking()
-        springs = np.empty(0) if ground is None or ground.springs is None else ground.springs.positions
+        bed = None if ground is None else ground.springs
+        springs = np.empty(0) if bed is None else bed.positions
         poses, by, curve, time = resting_poses(structure_outline(p, structure), springs), 1.0, None, 0.0
     else:
         (curve,) = response_curves(response)
         time = _instant(curve, at)
         outline = outline_of_response(curve.history, structure, 0)
-        poses = structure_poses(curve, outline, np.array([time]), 1.0)
+        poses, bed = structure_poses(curve, outline, np.array([time]), 1.0), curve.history.model.springs
         by = default_amplification([curve], [poses]) if amplification is None else amplification
         p, by = curve.history.model.properties, checked_positive("amplification", by, "")
     with figures.applied_figure_style(size=size):
@@ -175,7 +177,7 @@ def plot_structure(
             title += animation_scales_text(by, 1.0)
             conditions = _conditions(curve, time)
         o = poses.outline
-        notes = [*_element_notes(p.elements, o, conditions), *_notes(p, o, ground, poses.springs)]
+        notes = [*_element_notes(p.elements, o, conditions), *_notes(p, o, ground, bed)]
         _Layout(axes, poses, by).draw(title, notes, _story_runs(p, o), [each.color for each in conditions])
     return figure
 
@@ -282,18 +284,16 @@ def _runs(values: Iterable[float]) -> list[tuple[int, int, float]]:
     return found
 
 
-def _notes(p: RockingProperties, o: StructureOutline, ground: Ground | None, springs: Array) -> list[_Note]:
+def _notes(p: RockingProperties, o: StructureOutline, ground: Ground | None, bed: Springs | None) -> list[_Note]:
     """Return the notes on base, ground, masses, columns that lean and stories that yield, the most important first."""
     side = max((float(each.points[:, 0].max()) for each in o.strokes[:-1]), default=0.0)
     body = min(side, min(-o.left, o.right))
     found: list[_Note] = []
     if p.base_mass:
         found.append(_Note(f"{translated('base')}, {_amount(p.base_mass, 'kg')}", (0.9 * o.right, 0.0, BODY)))
-    if springs.size:
-        stiffness = "" if ground is None or ground.springs is None else (
-            f", Σ k = {_amount(ground.springs.total_stiffness, 'N/m')}")  # fmt: skip
-        words = translated("{n} springs", n=springs.size)
-        found.append(_Note(f"{words}{stiffness}", (float(springs[-1]), 0.0, GROUND)))
+    if bed is not None:
+        words = f"{translated('{n} springs', n=bed.n)}, Σ k = {_amount(bed.total_stiffness, 'N/m')}"
+        found.append(_Note(words, (float(bed.positions[-1]), 0.0, GROUND)))
     else:
         found.append(_Note(translated("pivot"), (o.right, 0.0, BODY), "none"))
     if ground is not None and ground.slides:
@@ -481,11 +481,11 @@ class _Layout:
         y = here.ground - 15.0
         alike = abs(o.left + o.right) < 1e-9 * o.right
         for side, edge in (("B − e", o.right),) if not alike else ():
-            self._write(f"{side} = {_length(edge)}", here.middle + _GAP, y - _GAP, va="top", ha="left")
+            self._write(f"{side} = {_length(edge)}", here.middle + _GAP, y - 2.0 * _GAP, va="top", ha="left")
         if alike:
-            self._write(f"B = {_length(o.right)}", here.middle, y - _GAP, va="top", ha="center")
+            self._write(f"B = {_length(o.right)}", here.middle, y - 2.0 * _GAP, va="top", ha="center")
         else:
-            self._write(f"B + e = {_length(-o.left)}", here.middle - _GAP, y - _GAP, va="top", ha="right")
+            self._write(f"B + e = {_length(-o.left)}", here.middle - _GAP, y - 2.0 * _GAP, va="top", ha="right")
         for edge in (o.right,) if alike else (o.left, o.right):
             across = [here.middle, here.middle + here.zoom * edge]
             self._line(across, [y, y])

@@ -574,7 +574,8 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     >>> from pathlib import Path
     >>> import rockflex as rf
     >>> folder = Path(tempfile.mkdtemp())
-    >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
+    >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)),
+    ...     folder / "pulse.svg").name
     'pulse.svg'
     """
     target = checked_file_path("path", path)

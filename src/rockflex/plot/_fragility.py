@@ -105,7 +105,8 @@ def plot_fragility(
     >>> import rockflex as rf
     >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
-    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> runs = rf.run_cloud(structure, motions, "rigid",
+    ...     scales=[0.5, 1.0, 1.5, 2.0])
     >>> figure = rf.plot_fragility(runs, "pga")
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$P(\\mathrm{uplift},\\ θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
@@ -296,7 +297,8 @@ def plot_stripes(
     >>> import pandas as pd
     >>> levels, n = [0.2] * 10 + [0.4] * 10 + [0.8] * 10, [1, 5, 9]
     >>> fell = [place % 10 < n[place // 10] for place in range(30)]
-    >>> runs = pd.DataFrame({"structure": "#1", "model": "MDOF-S", "level": levels, "nominal_overturning": fell})
+    >>> runs = pd.DataFrame({"structure": "#1", "model": "MDOF-S",
+    ...     "level": levels, "nominal_overturning": fell})
     >>> runs["status"] = ["overturned" if each else "rocking" for each in fell]
     >>> runs["max_rotation"] = [1.571 if each else 0.01 for each in fell]
     >>> figure = rf.plot_stripes(runs, measure="pgv")
@@ -573,7 +575,8 @@ def plot_clouds(
     >>> import rockflex as rf
     >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
-    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> runs = rf.run_cloud(structure, motions, "rigid",
+    ...     scales=[0.5, 1.0, 1.5, 2.0])
     >>> figure = rf.plot_clouds(runs, measure="pga")
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')

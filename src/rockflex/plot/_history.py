@@ -420,7 +420,8 @@ def plot_history(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
     >>> figure = rf.plot_history(response, panels=["rotation", "base_moment"])
@@ -538,10 +539,12 @@ def plot_spread(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
-    >>> others = [rf.simulate(frame, rf.ricker_pulse(a, 0.6), "2DOF-S") for a in (3.9, 4.1)]
+    >>> others = [rf.simulate(frame, rf.ricker_pulse(a, 0.6), "2DOF-S")
+    ...     for a in (3.9, 4.1)]
     >>> figure = rf.plot_spread([response], [others], panels=["rotation"])
     >>> len(figure.axes), figure.axes[0].get_xlabel()
     (1, 'time [s]')
@@ -626,7 +629,8 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
     >>> figure = rf.plot_energy(response)
@@ -729,11 +733,14 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
-    >>> bed = rf.winkler_bed(frame.half_width, breadth=3.0, subgrade_modulus=2e8).damped(0.3, 160e3)
+    >>> bed = rf.winkler_bed(frame.half_width, breadth=3.0,
+    ...     subgrade_modulus=2e8).damped(0.3, 160e3)
     >>> ground = rf.Ground(springs=bed, base_inertia=1e4)
-    >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S", ground=ground))
+    >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6),
+    ...     "2DOF-S", ground=ground))
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
     """

@@ -180,10 +180,12 @@ def plot_loops(
     --------
     >>> import rockflex as rf
     >>> wall = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3, half_width=1.5, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3,
+    ...     half_width=1.5, damping_ratio=0.02
     ... )
     >>> fuse = rf.YieldingDissipator(stiffness=60e6, yield_force=150e3)
-    >>> held = rf.Restrained(wall, [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
+    >>> held = rf.Restrained(wall,
+    ...     [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
     >>> figure = rf.plot_loops(rf.moment_rotation(held, [0.02, -0.02, 0.0]))
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['M [MN m]', 'F [kN]', 'F [kN]']
@@ -291,7 +293,8 @@ def plot_hysteresis(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
     ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
@@ -347,7 +350,8 @@ def plot_yielding(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
     ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
@@ -433,7 +437,8 @@ def plot_moment_rotation(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
     >>> figure = rf.plot_moment_rotation(response)
@@ -552,7 +557,8 @@ def plot_moment_rotation_laws(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> figure = rf.plot_moment_rotation_laws(frame)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()

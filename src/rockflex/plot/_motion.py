@@ -171,7 +171,8 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     --------
     >>> import rockflex as rf
     >>> suite = rf.load_suite("fema-p695-far-field")
-    >>> figure = rf.plot_selection(suite.select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0)))
+    >>> figure = rf.plot_selection(suite.select(rf.ec8_spectrum(2.5, "C"), 7,
+    ...     (0.2, 2.0)))
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['$S_a$ [m/s²]', 'mean/target']
     """
@@ -266,7 +267,8 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     Examples
     --------
     >>> import rockflex as rf
-    >>> table = rf.rocking_spectrum(rf.ricker_pulse(4.0, 0.6), slendernesses=[0.2], periods=[2.0, 4.0, 6.0])
+    >>> table = rf.rocking_spectrum(rf.ricker_pulse(4.0, 0.6),
+    ...     slendernesses=[0.2], periods=[2.0, 4.0, 6.0])
     >>> figure = rf.plot_rocking_spectrum(table)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
@@ -334,8 +336,10 @@ def plot_overturning_spectrum(
     --------
     >>> import rockflex as rf
     >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
-    >>> pulse = lambda amplitude, frequency: rf.ricker_pulse(amplitude, 6.28 / frequency)
-    >>> table = rf.overturning_spectrum(structure, pulse, [1.0, 2.0], relative_amplitudes=[1.0, 2.0, 4.0, 8.0])
+    >>> pulse = lambda amplitude, frequency: rf.ricker_pulse(amplitude,
+    ...     6.28 / frequency)
+    >>> table = rf.overturning_spectrum(structure, pulse, [1.0, 2.0],
+    ...     relative_amplitudes=[1.0, 2.0, 4.0, 8.0])
     >>> figure = rf.plot_overturning_spectrum(table)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$ω_g/p$', '$a_p/(g\\,α)$')

@@ -40,9 +40,11 @@ def plot_pushover(push: Pushover, fit: BilinearFit | None = None, *, size: Size 
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=float("inf"),
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.03)
-    >>> push = rf.pushover(rf.YieldingStories(frame, [300e3, 250e3, 140e3], 0.05), top_displacement=0.1, lifts=False)
+    >>> push = rf.pushover(rf.YieldingStories(frame, [300e3, 250e3, 140e3], 0.05),
+    ...     top_displacement=0.1, lifts=False)
     >>> figure = rf.plot_pushover(push, push.fit())
     >>> len(figure.axes), figure.axes[0].get_ylabel()
     (2, '$V_b$ [kN]')

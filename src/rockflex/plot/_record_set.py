@@ -55,9 +55,12 @@ def plot_set(found: RecordSet, demands: Sequence[str] | None = None, *, size: Si
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> pulses = [rf.one_sine_pulse(amplitude=3.0, period=t) for t in (0.5, 0.6, 0.7)]
-    >>> len(rf.plot_set(rf.simulate_set(frame, pulses, "2DOF-S", rule="ec8")).axes)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> pulses = [rf.one_sine_pulse(amplitude=3.0, period=t)
+    ...     for t in (0.5, 0.6, 0.7)]
+    >>> len(rf.plot_set(rf.simulate_set(frame, pulses, "2DOF-S",
+    ...     rule="ec8")).axes)
     4
     """
     statistics = checked_instance("found", found, RecordSet).statistics

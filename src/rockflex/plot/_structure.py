@@ -74,7 +74,8 @@ def plot_mode_shapes(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> figure = rf.plot_mode_shapes(frame, n_modes=2)
     >>> len(figure.axes), figure.axes[0].get_ylabel()
@@ -177,7 +178,8 @@ def plot_frequency_equation(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> figure = rf.plot_frequency_equation(frame)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
@@ -316,7 +318,8 @@ def plot_frequency_ratios(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> table = rf.frequency_ratios(frame, [2.0, 4.0, 8.0])
     >>> figure = rf.plot_frequency_ratios(table)
@@ -443,7 +446,8 @@ def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size 
     Examples
     --------
     >>> import rockflex as rf
-    >>> tower = rf.TaperedTower(height=200, base_radius=8, top_radius=4, wall=1, density=2400, elastic_modulus=25e9,
+    >>> tower = rf.TaperedTower(height=200, base_radius=8, top_radius=4, wall=1,
+    ...     density=2400, elastic_modulus=25e9,
     ...                         damping_ratio=0.02)
     >>> figure = rf.plot_tower(tower)
     >>> len(figure.axes), figure.axes[0].get_ylabel()

@@ -49,9 +49,12 @@ class Comparison(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> known = {"story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1.0, "period": 0.5, "damping_ratio": 0.02}
-    >>> narrow, wide = (rf.Frame(2, 3.0, aspect_ratio=ratio, **known) for ratio in (8.0, 6.0))
-    >>> both = rf.compare({"narrow": narrow, "wide": wide}, rf.one_sine_pulse(amplitude=3.0, period=0.8))
+    >>> known = {"story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1.0,
+    ...     "period": 0.5, "damping_ratio": 0.02}
+    >>> narrow, wide = (rf.Frame(2, 3.0, aspect_ratio=ratio, **known)
+    ...     for ratio in (8.0, 6.0))
+    >>> both = rf.compare({"narrow": narrow, "wide": wide},
+    ...     rf.one_sine_pulse(amplitude=3.0, period=0.8))
     >>> both.differences().loc[["max_rotation", "max_base_moment"]].round(1)
                      wide
     max_rotation     35.9

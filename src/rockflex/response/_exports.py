@@ -48,8 +48,10 @@ def to_matlab(result: Any, path: str | Path, quantities: Sequence[str] | None = 
     --------
     >>> import rockflex as rf
     >>> from scipy.io import loadmat
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> table = rf.run_cloud(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8), "2DOF-S", scales=(0.5, 1.0))
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> table = rf.run_cloud(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8),
+    ...     "2DOF-S", scales=(0.5, 1.0))
     >>> file = loadmat(rf.to_matlab(table, "runs.mat"), simplify_cells=True)
     >>> file["pga"], file["units"]["pga"]
     (array([1.5, 3. ]), 'm/s2')
@@ -90,9 +92,11 @@ def to_netcdf(result: Any, path: str | Path, quantities: Sequence[str] | None = 
     >>> import rockflex as rf
     >>> import xarray
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
-    >>> response = rf.simulate(column, rf.one_sine_pulse(amplitude=3.0, period=1.0), "2DOF-S")
+    >>> response = rf.simulate(column,
+    ...     rf.one_sine_pulse(amplitude=3.0, period=1.0), "2DOF-S")
     >>> with xarray.open_dataset(rf.to_netcdf(response, "run.nc")) as file:
     ...     print(file["rotation"].attrs)
     {'units': 'rad', 'long_name': 'rotation of the base'}

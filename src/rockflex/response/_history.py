@@ -63,10 +63,12 @@ class History(Value):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
-    >>> history = rf.simulate(column, pulse, "2DOF-S", output="history", free_vibration=5.0).history
+    >>> history = rf.simulate(column, pulse, "2DOF-S", output="history",
+    ...     free_vibration=5.0).history
     >>> history.uplift_times.round(3)
     array([0.342, 1.28 , 3.363, 5.313])
     >>> float(abs(history.rotation).max().round(4))
@@ -130,8 +132,10 @@ class History(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-        >>> rocking = rf.simulate(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8), "2DOF-S")
+        >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+        ...     damping_ratio=0.02)
+        >>> rocking = rf.simulate(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8),
+        ...     "2DOF-S")
         >>> round(rocking.residual_rotation, 4), rocking.settled_rotation()
         (0.0198, 0.0)
         """
@@ -607,9 +611,11 @@ class SampledHistory(History):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
-    >>> history = rf.simulate(column, rf.one_sine_pulse(amplitude=3.0, period=1.0), "2DOF-S", output="history").history
+    >>> history = rf.simulate(column, rf.one_sine_pulse(amplitude=3.0,
+    ...     period=1.0), "2DOF-S", output="history").history
     >>> history.resample(0.25).rotation.round(4)
     array([ 0.    ,  0.    , -0.0115, -0.0209, -0.007 ])
     >>> round(float(history.at(0.7).rotation[0]), 4)

@@ -171,7 +171,8 @@ class CheckTable(HtmlTable, Value):
     --------
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
-    >>> run = rf.simulate(block, rf.one_sine_pulse(amplitude=4.0, period=1.0), "rigid")
+    >>> run = rf.simulate(block, rf.one_sine_pulse(amplitude=4.0, period=1.0),
+    ...     "rigid")
     >>> table = rf.check(run, rf.CheckLimits(rotation_ratio=0.5))
     >>> [(each.name, round(each.ratio, 2)) for each in table.rows]
     [('rotation', 0.37), ('rotation over α', 0.5)]
@@ -231,8 +232,10 @@ def check(result: Response | RecordSet, limits: CheckLimits | None = None) -> Ch
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> run = rf.simulate(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8), "2DOF-S")
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> run = rf.simulate(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8),
+    ...     "2DOF-S")
     >>> table = rf.check(run, rf.CheckLimits(drift_ratio=0.005, friction=0.5))
     >>> table
     CheckTable(4 checks, failed: none)

@@ -104,10 +104,12 @@ class MomentRotation(MomentRotationPath):
     --------
     >>> import rockflex as rf
     >>> wall = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3, half_width=1.5, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3,
+    ...     half_width=1.5, damping_ratio=0.02
     ... )
     >>> fuse = rf.YieldingDissipator(stiffness=60e6, yield_force=150e3)
-    >>> held = rf.Restrained(wall, [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
+    >>> held = rf.Restrained(wall,
+    ...     [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
     >>> curve = rf.moment_rotation(held, [0.02, -0.02, 0.0])
     >>> (curve.uplift_moments / 1e3).round(1)
     array([ 1332.9, -1107.9])
@@ -241,9 +243,11 @@ class MomentRotationOnSprings(MomentRotationPath):
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.3, half_diagonal=4.0, mass=80e3)
     >>> b = block.half_width
-    >>> ground = rf.Ground(springs=rf.Springs([-b, b], stiffness=50e6), base_inertia=1e5)
+    >>> ground = rf.Ground(springs=rf.Springs([-b, b], stiffness=50e6),
+    ...     base_inertia=1e5)
     >>> curve = rf.moment_rotation(block, [0.02], ground=ground)
-    >>> (curve.uplift_rotations * 1e3).round(2), (curve.uplift_moments / 1e3).round(1)
+    >>> (curve.uplift_rotations * 1e3).round(2), (
+    ...     curve.uplift_moments / 1e3).round(1)
     (array([6.64]), array([907.8]))
     >>> (curve.edge_uplift[-1] * 1e3).round(1)  # left and right, in mm
     array([ 31.6, -15.7])

@@ -42,7 +42,8 @@ class PushoverEvent:
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> (event,) = rf.pushover(column, top_displacement=0.5).events
     >>> event.name, round(event.base_shear / 1e3, 1)
@@ -72,9 +73,12 @@ class BilinearFit:
     Examples
     --------
     >>> import rockflex as rf
-    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3, half_width=1.0, damping_ratio=0.03)
-    >>> fit = rf.pushover(rf.YieldingStories(one, strengths=150e3, post_yield_ratio=0.1), 0.05, lifts=False).fit()
-    >>> round(fit.yield_displacement, 6), round(fit.yield_force), round(fit.post_yield_ratio, 6)
+    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3,
+    ...     half_width=1.0, damping_ratio=0.03)
+    >>> fit = rf.pushover(rf.YieldingStories(one, strengths=150e3,
+    ...     post_yield_ratio=0.1), 0.05, lifts=False).fit()
+    >>> round(fit.yield_displacement,
+    ...     6), round(fit.yield_force), round(fit.post_yield_ratio, 6)
     (0.003, 150000, 0.1)
     """
 
@@ -137,9 +141,12 @@ class Pushover(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3, half_width=1.0, damping_ratio=0.03)
-    >>> push = rf.pushover(rf.YieldingStories(one, strengths=150e3, post_yield_ratio=0.1), 0.05, lifts=False)
-    >>> print((push.to_frame()[["top_displacement", "base_shear"]] / [1.0, 1e3]).round(3))
+    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3,
+    ...     half_width=1.0, damping_ratio=0.03)
+    >>> push = rf.pushover(rf.YieldingStories(one, strengths=150e3,
+    ...     post_yield_ratio=0.1), 0.05, lifts=False)
+    >>> shown = push.to_frame()[["top_displacement", "base_shear"]] / [1.0, 1e3]
+    >>> print(shown.round(3))
        top_displacement  base_shear
     0             0.000         0.0
     1             0.003       150.0

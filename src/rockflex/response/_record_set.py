@@ -136,8 +136,10 @@ class RecordSet(HtmlTable, Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> pulses = {f"T = {t} s": rf.one_sine_pulse(amplitude=3.0, period=t) for t in (0.5, 0.6, 0.7)}
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> pulses = {f"T = {t} s": rf.one_sine_pulse(amplitude=3.0, period=t)
+    ...     for t in (0.5, 0.6, 0.7)}
     >>> found = rf.simulate_set(frame, pulses, "2DOF-S", rule="ec8")
     >>> found.peaks["max_rotation"].round(4).tolist()
     [0.0059, 0.0093, 0.0131]

@@ -245,7 +245,8 @@ class Response(HtmlTable, Value):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=1.0)
     >>> response = rf.simulate(column, pulse, "2DOF-S", free_vibration=5.0)

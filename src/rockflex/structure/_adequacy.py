@@ -48,7 +48,8 @@ class AdequacyTolerance:
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> strict = rf.AdequacyTolerance(first_frequency=0.02, second_frequency=0.02)
@@ -142,7 +143,8 @@ class Adequacy(Value):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> found = rf.adequacy(frame.rocking())
@@ -234,7 +236,8 @@ def adequacy(
     --------
     >>> import rockflex as rf
     >>> tower = rf.TaperedTower(
-    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0, density=2400.0, elastic_modulus=25e9,
+    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0,
+    ...     density=2400.0, elastic_modulus=25e9,
     ...     damping_ratio=0.02,
     ... )
     >>> found = rf.adequacy(tower.rocking())

@@ -111,7 +111,8 @@ class ModalProperties(HtmlTable, Value):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> modes = frame.modal()
@@ -198,7 +199,8 @@ def modal_properties(
     Examples
     --------
     >>> import rockflex as rf
-    >>> modes = rf.modal_properties(mass=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0])
+    >>> modes = rf.modal_properties(mass=[20e3, 20e3],
+    ...     stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0])
     >>> modes.period.round(3)
     array([0.719, 0.275])
     >>> modes.effective_mass.round()

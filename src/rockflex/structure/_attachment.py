@@ -63,7 +63,8 @@ class Attachment:
     Examples
     --------
     >>> import rockflex as rf
-    >>> brace = rf.YieldingDissipator(stiffness=50e6, yield_force=200e3, between=(0, 1), cosine=0.8)
+    >>> brace = rf.YieldingDissipator(stiffness=50e6, yield_force=200e3,
+    ...     between=(0, 1), cosine=0.8)
     >>> brace.attached, brace.where
     (True, 'floors 0 to 1')
     """

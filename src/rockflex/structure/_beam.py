@@ -62,7 +62,8 @@ class Beam(AssembledStructure, Value):
     --------
     >>> import rockflex as rf
     >>> beam = rf.Beam(
-    ...     height=20.0, mass=([0.0, 20.0], [800.0, 400.0]), bending_stiffness=2e9, half_width=1.0,
+    ...     height=20.0, mass=([0.0, 20.0], [800.0, 400.0]),
+    ...     bending_stiffness=2e9, half_width=1.0,
     ...     damping_ratio=0.02, n_modes=3,
     ... )
     >>> beam.modal().period.round(3)

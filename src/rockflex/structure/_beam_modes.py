@@ -79,7 +79,8 @@ class RitzShapes(Value):
     ...     curvature=lambda z: np.full((z.size, 1), 2.0),
     ... )
     >>> beam = rf.Beam(
-    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0, damping_ratio=0.02,
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0,
+    ...     damping_ratio=0.02,
     ...     method="ritz", shapes=parabola, n_modes=1,
     ... )
     >>> beam.modal().period.round(3)
@@ -181,7 +182,8 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     >>> import rockflex as rf
     >>> shapes = rf.cosine_shapes(height=20.0, n_shapes=3)
     >>> beam = rf.Beam(
-    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0, damping_ratio=0.02,
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.0,
+    ...     damping_ratio=0.02,
     ...     method="ritz", shapes=shapes, n_modes=1,
     ... )
     >>> beam.modal().period.round(3)

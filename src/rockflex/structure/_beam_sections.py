@@ -188,7 +188,8 @@ class LumpedMasses(Value):
     >>> import rockflex as rf
     >>> tank = rf.LumpedMasses(heights=[20.0], masses=[50e3], rotary=[1e5])
     >>> tower = rf.Beam(
-    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.5, damping_ratio=0.02,
+    ...     height=20.0, mass=500.0, bending_stiffness=2e9, half_width=1.5,
+    ...     damping_ratio=0.02,
     ...     lumped_masses=tank, n_modes=2,
     ... )
     >>> tower.modal().period.round(3)

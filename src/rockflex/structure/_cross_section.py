@@ -45,11 +45,14 @@ class Section(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> pier = rf.Section.box(width=4.0, depth=2.5, wall=0.35, elastic_modulus=33e9, density=2500, stiffness_factor=0.5)
-    >>> print(f"{pier.bending_stiffness:.4g} N m², {pier.mass_per_length:.5g} kg/m")
+    >>> pier = rf.Section.box(width=4.0, depth=2.5, wall=0.35,
+    ...     elastic_modulus=33e9, density=2500, stiffness_factor=0.5)
+    >>> stiffness, mass = pier.bending_stiffness, pier.mass_per_length
+    >>> print(f"{stiffness:.4g} N m², {mass:.5g} kg/m")
     5.947e+10 N m², 10150 kg/m
     >>> column = rf.CantileverWithTipMass(
-    ...     height=15.0, tip_mass=600e3, section=pier, base_mass=250e3, half_width=2.0, damping_ratio=0.03
+    ...     height=15.0, tip_mass=600e3, section=pier, base_mass=250e3,
+    ...     half_width=2.0, damping_ratio=0.03
     ... )
     >>> print(f"{column.modal().period[0]:.3f} s")
     0.689 s
@@ -97,7 +100,8 @@ class Section(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> wall = rf.Section.rectangle(width=0.3, depth=4.0, elastic_modulus=30e9, density=2500)
+        >>> wall = rf.Section.rectangle(width=0.3, depth=4.0, elastic_modulus=30e9,
+        ...     density=2500)
         >>> round(wall.area, 6), round(wall.second_moment, 6)
         (1.2, 1.6)
         """
@@ -126,7 +130,8 @@ class Section(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> box = rf.Section.box(width=4.0, depth=2.0, wall=0.5, elastic_modulus=30e9, density=2500)
+        >>> box = rf.Section.box(width=4.0, depth=2.0, wall=0.5, elastic_modulus=30e9,
+        ...     density=2500)
         >>> round(box.area, 6), round(box.second_moment, 6)
         (5.0, 2.416667)
         """
@@ -148,7 +153,8 @@ class Section(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> column = rf.Section.circle(diameter=2.0, elastic_modulus=30e9, density=2500)
+        >>> column = rf.Section.circle(diameter=2.0, elastic_modulus=30e9,
+        ...     density=2500)
         >>> round(column.area, 6), round(column.second_moment, 6)
         (3.141593, 0.785398)
         """
@@ -170,7 +176,8 @@ class Section(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> tube = rf.Section.tube(diameter=2.0, wall=0.02, elastic_modulus=210e9, density=7850)
+        >>> tube = rf.Section.tube(diameter=2.0, wall=0.02, elastic_modulus=210e9,
+        ...     density=7850)
         >>> round(tube.area, 6), round(tube.second_moment, 6)
         (0.124407, 0.060972)
         """
@@ -202,10 +209,13 @@ class Section(Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> steel, concrete = {"elastic_modulus": 210e9, "density": 7850}, {"elastic_modulus": 30e9, "density": 2500}
-        >>> tube, core = rf.Section.tube(1.0, 0.02, **steel), rf.Section.circle(0.96, **concrete)
+        >>> steel, concrete = {"elastic_modulus": 210e9,
+        ...     "density": 7850}, {"elastic_modulus": 30e9, "density": 2500}
+        >>> tube, core = rf.Section.tube(1.0, 0.02,
+        ...     **steel), rf.Section.circle(0.96, **concrete)
         >>> filled = rf.Section.composite([(tube, 0.0), (core, 0.0)])
-        >>> print(f"{filled.bending_stiffness:.4g} N m², {filled.mass_per_length:.4g} kg/m")
+        >>> stiffness, mass = filled.bending_stiffness, filled.mass_per_length
+        >>> print(f"{stiffness:.4g} N m², {mass:.4g} kg/m")
         2.804e+09 N m², 2293 kg/m
         """
         found = _checked_composite_parts(parts)

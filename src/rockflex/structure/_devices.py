@@ -58,7 +58,8 @@ class Strand:
     --------
     >>> import rockflex as rf
     >>> from rockflex.structure import STRANDS
-    >>> STRANDS["Y1860S7-15.7"] == rf.Strand(150e-6, breaking_force=279e3, yield_force=246e3, modulus=195e9)
+    >>> STRANDS["Y1860S7-15.7"] == rf.Strand(150e-6, breaking_force=279e3,
+    ...     yield_force=246e3, modulus=195e9)
     True
     """
 
@@ -113,7 +114,8 @@ class Steel:
     Examples
     --------
     >>> import rockflex as rf
-    >>> tested = rf.Steel(330e6, tensile_strength=460e6, ultimate_strain=0.2, modulus=205e9)
+    >>> tested = rf.Steel(330e6, tensile_strength=460e6, ultimate_strain=0.2,
+    ...     modulus=205e9)
     >>> round(rf.bar_fuse(1, diameter=0.02, length=0.5, steel=tested).yield_force)
     103673
     """
@@ -295,8 +297,10 @@ def bar_fuse(
     Examples
     --------
     >>> import rockflex as rf
-    >>> fuse = rf.bar_fuse(2, diameter=0.02, length=0.5, steel="B500B", position=0.8)
-    >>> round(fuse.yield_force), round(fuse.stiffness), round(fuse.post_yield_ratio, 4), fuse.rupture_elongation
+    >>> fuse = rf.bar_fuse(2, diameter=0.02, length=0.5, steel="B500B",
+    ...     position=0.8)
+    >>> round(fuse.yield_force), round(fuse.stiffness), round(
+    ...     fuse.post_yield_ratio, 4), fuse.rupture_elongation
     (314159, 251327412, 0.0042, 0.025)
     """
     count, metal, d, L = int(n), _named("steel", steel, Steel, STEELS), diameter, length
@@ -354,7 +358,8 @@ def u_plate_fuse(
     Examples
     --------
     >>> import rockflex as rf
-    >>> fuse = rf.u_plate_fuse(4, width=0.12, thickness=0.012, diameter=0.12, steel="S355", position=1.2)
+    >>> fuse = rf.u_plate_fuse(4, width=0.12, thickness=0.012, diameter=0.12,
+    ...     steel="S355", position=1.2)
     >>> round(fuse.yield_force), round(fuse.stiffness)
     (102240, 19013711)
     """

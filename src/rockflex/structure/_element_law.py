@@ -41,7 +41,8 @@ class BranchEnd:
     Examples
     --------
     >>> import rockflex as rf
-    >>> rf.BranchEnd("yielding", elongation=0.01, rising=True, internal=1.0).branch
+    >>> rf.BranchEnd("yielding", elongation=0.01, rising=True,
+    ...     internal=1.0).branch
     'yielding'
     """
 
@@ -77,7 +78,8 @@ class Branch:
     Examples
     --------
     >>> import rockflex as rf
-    >>> elastic = rf.Branch(2e7, ends=[rf.BranchEnd("yielding", 0.01, rising=True, internal=1.0)])
+    >>> elastic = rf.Branch(2e7,
+    ...     ends=[rf.BranchEnd("yielding", 0.01, rising=True, internal=1.0)])
     >>> elastic.stiffness
     20000000.0
     """
@@ -127,15 +129,19 @@ class ElementLaw(BaseElement):
     ...     position: float = 0.0
     ...
     ...     def branches(self):
-    ...         opened = rf.Branch(0.0, ends=[rf.BranchEnd("pressed", self.gap, rising=True)])
+    ...         opened = rf.Branch(0.0,
+    ...         ends=[rf.BranchEnd("pressed", self.gap, rising=True)])
     ...         pressed = rf.Branch(
-    ...             self.stiffness, -self.stiffness * self.gap, ends=[rf.BranchEnd("open", self.gap, rising=False)]
+    ...             self.stiffness, -self.stiffness * self.gap,
+    ...             ends=[rf.BranchEnd("open", self.gap, rising=False)]
     ...         )
     ...         return {"open": opened, "pressed": pressed}
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> held = rf.Restrained(frame, Bumper(stiffness=50e6, gap=0.005))
-    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4) for each in (frame, held)]
+    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4)
+    ...     for each in (frame, held)]
     [0.056, 0.0389]
     """
 

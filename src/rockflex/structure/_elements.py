@@ -232,8 +232,10 @@ class YieldingDissipator(BaseElement):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> fused = rf.Restrained(frame, rf.YieldingDissipator(stiffness=2e7, yield_force=200e3))
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> fused = rf.Restrained(frame,
+    ...     rf.YieldingDissipator(stiffness=2e7, yield_force=200e3))
     >>> fused.rocking().self_centring, round(fused.rocking().recentring_ratio, 2)
     (True, 5.89)
     """
@@ -345,10 +347,12 @@ class ViscousDamper(BaseElement):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> damped = rf.Restrained(frame, rf.ViscousDamper(coefficient=500e3))
-    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4) for each in (frame, damped)]
+    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4)
+    ...     for each in (frame, damped)]
     [0.056, 0.0529]
     """
 
@@ -403,9 +407,11 @@ class FrictionDamper(BaseElement):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> damped = rf.Restrained(frame, rf.FrictionDamper(force=200e3))
-    >>> damped.rocking().self_centring, round(damped.rocking().recentring_ratio, 2)
+    >>> damped.rocking().self_centring, round(damped.rocking().recentring_ratio,
+    ...     2)
     (True, 5.89)
     """
 

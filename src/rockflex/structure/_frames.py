@@ -54,7 +54,8 @@ class LumpedStructure(DrawnStructure, Value):
     --------
     >>> import rockflex as rf
     >>> structure = rf.LumpedStructure(
-    ...     masses=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0],
+    ...     masses=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]],
+    ...     heights=[3.0, 6.0],
     ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
     ... )
     >>> structure.modal().period.round(3)
@@ -195,7 +196,8 @@ class FishBone(AssembledStructure, Value):
     --------
     >>> import rockflex as rf
     >>> frame = rf.FishBone(
-    ...     story_heights=[4.0, 3.0], masses=[50e3, 40e3], column_stiffness=[2e8, 1.5e8], beam_stiffness=5e8,
+    ...     story_heights=[4.0, 3.0], masses=[50e3, 40e3],
+    ...     column_stiffness=[2e8, 1.5e8], beam_stiffness=5e8,
     ...     base_mass=50e3, half_width=1.5, damping_ratio=0.02,
     ... )
     >>> frame.height
@@ -375,7 +377,8 @@ class Frame(FrameSchema, AssembledStructure):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> round(frame.half_width, 3)

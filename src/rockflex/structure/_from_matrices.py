@@ -382,7 +382,8 @@ def from_matrices(
     --------
     >>> import rockflex as rf
     >>> structure = rf.from_matrices(
-    ...     mass=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0],
+    ...     mass=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]],
+    ...     heights=[3.0, 6.0],
     ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
     ... )
     >>> structure.modal().period.round(3)
@@ -443,7 +444,8 @@ def from_modes(
     --------
     >>> import rockflex as rf
     >>> structure = rf.from_modes(
-    ...     omega=[8.74, 22.88], shapes=[[0.61803, 1.61803], [1.0, -1.0]], mass=[20e3, 20e3], heights=[3.0, 6.0],
+    ...     omega=[8.74, 22.88], shapes=[[0.61803, 1.61803], [1.0, -1.0]],
+    ...     mass=[20e3, 20e3], heights=[3.0, 6.0],
     ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
     ... )
     >>> structure.modal().effective_mass.round(-1)

@@ -166,7 +166,8 @@ class Ground(Value):
     >>> import rockflex as rf
     >>> rf.Ground(friction=0.4).slides
     True
-    >>> ground = rf.Ground(springs=rf.Springs([-1.5, 1.5], stiffness=4e8, damping=2e6), base_inertia=30e3)
+    >>> ground = rf.Ground(springs=rf.Springs([-1.5, 1.5], stiffness=4e8,
+    ...     damping=2e6), base_inertia=30e3)
     >>> ground.slides, ground.springs.n
     (False, 2)
     """
@@ -360,8 +361,10 @@ def winkler_bed(
     Examples
     --------
     >>> import rockflex as rf
-    >>> bed = rf.winkler_bed(half_width=2.0, breadth=3.0, subgrade_modulus=40e6, n=40)
-    >>> round(bed.total_stiffness / (40e6 * 4.0 * 3.0), 6), round(bed.rotational_stiffness / (40e6 * 3.0 * 16.0 / 3), 4)
+    >>> bed = rf.winkler_bed(half_width=2.0, breadth=3.0, subgrade_modulus=40e6,
+    ...     n=40)
+    >>> round(bed.total_stiffness / (40e6 * 4.0 * 3.0),
+    ...     6), round(bed.rotational_stiffness / (40e6 * 3.0 * 16.0 / 3), 4)
     (1.0, 0.9994)
     """
     B, shift = half_width, _checked_shift(eccentricity, half_width)
@@ -409,7 +412,8 @@ def asce41_bed(
     Examples
     --------
     >>> import rockflex as rf
-    >>> bed = rf.asce41_bed(half_width=2.0, breadth=3.0, shear_modulus=20e6, poisson_ratio=0.35)
+    >>> bed = rf.asce41_bed(half_width=2.0, breadth=3.0, shear_modulus=20e6,
+    ...     poisson_ratio=0.35)
     >>> round(bed.total_stiffness / (20e6 / 0.65), 3)  # 6.83 × 1 m + 0.73 × 3 m
     9.02
     """
@@ -473,8 +477,10 @@ def gazetas_bed(
     Examples
     --------
     >>> import rockflex as rf
-    >>> two = rf.gazetas_bed(half_width=1.5, breadth=2.0, shear_modulus=30e6, poisson_ratio=0.3, n=2)
-    >>> two.positions.round(3), round(two.total_stiffness / 1e6), round(two.rotational_stiffness / 1e6)
+    >>> two = rf.gazetas_bed(half_width=1.5, breadth=2.0, shear_modulus=30e6,
+    ...     poisson_ratio=0.3, n=2)
+    >>> two.positions.round(3), round(two.total_stiffness / 1e6), round(
+    ...     two.rotational_stiffness / 1e6)
     (array([-1.326,  1.326]), 240, 422)
     """
     B, across, modulus = half_width, breadth, shear_modulus

@@ -36,7 +36,8 @@ class FlagShapedBar(ElementLaw):
     Examples
     --------
     >>> import rockflex as rf
-    >>> bar = rf.FlagShapedBar(stiffness=2e7, yield_force=200e3, post_yield_ratio=0.05, flag_depth=0.8)
+    >>> bar = rf.FlagShapedBar(stiffness=2e7, yield_force=200e3,
+    ...     post_yield_ratio=0.05, flag_depth=0.8)
     >>> round(bar.slow_force(0.03))
     220000
     """
@@ -163,7 +164,8 @@ class MultilinearBar(ElementLaw):
     Examples
     --------
     >>> import rockflex as rf
-    >>> rf.MultilinearBar(elongations=[0.01, 0.03], forces=[100e3, 150e3]).slow_force(0.02)
+    >>> rf.MultilinearBar(elongations=[0.01, 0.03],
+    ...     forces=[100e3, 150e3]).slow_force(0.02)
     125000.0
     """
 

@@ -51,11 +51,13 @@ class Leaning(ModifiedStructure, Value):
     --------
     >>> import rockflex as rf
     >>> wall = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=0.0,
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=0.0,
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> props = rf.Leaning(wall, masses=60e3).rocking()
-    >>> round(props.weight_share, 3), round(props.resisting_moment / wall.rocking().resisting_moment, 12)
+    >>> round(props.weight_share, 3), round(
+    ...     props.resisting_moment / wall.rocking().resisting_moment, 12)
     (0.444, 1.0)
     """
 

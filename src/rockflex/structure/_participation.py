@@ -178,9 +178,11 @@ def rocking_properties(
     Examples
     --------
     >>> import rockflex as rf
-    >>> mass, stiffness, heights = [20e3, 20e3], [[8e6, -4e6], [-4e6, 4e6]], [3.0, 6.0]
+    >>> mass, heights = [20e3, 20e3], [3.0, 6.0]
+    >>> stiffness = [[8e6, -4e6], [-4e6, 4e6]]
     >>> modes = rf.modal_properties(mass, stiffness, heights)
-    >>> props = rf.rocking_properties(modes, mass, heights, base_mass=20e3, half_width=0.6, damping_ratio=0.02)
+    >>> props = rf.rocking_properties(modes, mass, heights, base_mass=20e3,
+    ...     half_width=0.6, damping_ratio=0.02)
     >>> round(props.resisting_moment)
     353160
     """

@@ -57,7 +57,8 @@ class RockingProperties(HtmlTable, Value):
     --------
     >>> import rockflex as rf
     >>> props = rf.RockingProperties(
-    ...     omega=[6.28], effective_mass=[160e3], effective_height=[10.5], top_ordinate=[1.3],
+    ...     omega=[6.28], effective_mass=[160e3], effective_height=[10.5],
+    ...     top_ordinate=[1.3],
     ...     i_theta=22e6, l0r=1.8e6, m_tot=240e3, half_width=1.3, zeta=0.02,
     ... )
     >>> round(props.resisting_moment)
@@ -381,8 +382,10 @@ class RockingProperties(HtmlTable, Value):
         Examples
         --------
         >>> import rockflex as rf
-        >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-        >>> held = rf.Restrained(frame, [rf.Tendon(100e3, 5e6), rf.YieldingDissipator(2e7, 400e3)]).rocking()
+        >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+        ...     damping_ratio=0.02)
+        >>> held = rf.Restrained(frame,
+        ...     [rf.Tendon(100e3, 5e6), rf.YieldingDissipator(2e7, 400e3)]).rocking()
         >>> round(held.recentring_ratio, 2), round(held.recentring_ratio_at(0.03), 2)
         (3.19, 3.69)
         """

@@ -154,7 +154,8 @@ class ModalStructure(DrawnStructure, Value):
     --------
     >>> import rockflex as rf
     >>> structure = rf.from_matrices(
-    ...     mass=[20e3], stiffness=[[4e6]], heights=[3.0], base_mass=20e3, half_width=0.6, damping_ratio=0.02
+    ...     mass=[20e3], stiffness=[[4e6]], heights=[3.0], base_mass=20e3,
+    ...     half_width=0.6, damping_ratio=0.02
     ... )
     >>> isinstance(structure, rf.ModalStructure)
     True
@@ -214,7 +215,8 @@ class Eccentric(ModifiedStructure):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> props = rf.Eccentric(frame, eccentricity=0.2).rocking()
@@ -259,11 +261,14 @@ class Restrained(ModifiedStructure):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
-    >>> restrained = rf.Restrained(frame, rf.Tendon(initial_force=500e3, stiffness=20e6))
-    >>> ratio = restrained.rocking().resisting_moment / frame.rocking().resisting_moment
+    >>> restrained = rf.Restrained(frame,
+    ...     rf.Tendon(initial_force=500e3, stiffness=20e6))
+    >>> held, free = (each.rocking() for each in (restrained, frame))
+    >>> ratio = held.resisting_moment / free.resisting_moment
     >>> round(ratio, 3)
     1.212
     """
@@ -304,7 +309,8 @@ def structure_warnings(structure: Any) -> tuple[str, ...]:
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=12.0, tip_mass=60.0, mass_per_length=4e3, bending_stiffness=2e9, base_mass=50e3, half_width=1.5,
+    ...     height=12.0, tip_mass=60.0, mass_per_length=4e3,
+    ...     bending_stiffness=2e9, base_mass=50e3, half_width=1.5,
     ...     damping_ratio=0.02,
     ... )
     >>> for warning in rf.structure_warnings(column):

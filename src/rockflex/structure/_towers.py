@@ -49,7 +49,8 @@ class TaperedTower(AssembledStructure, Value):
     --------
     >>> import rockflex as rf
     >>> tower = rf.TaperedTower(
-    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0, density=2400.0, elastic_modulus=25e9,
+    ...     height=200.0, base_radius=8.0, top_radius=4.0, wall=1.0,
+    ...     density=2400.0, elastic_modulus=25e9,
     ...     damping_ratio=0.02,
     ... )
     >>> tower.modal(3).period.round(2)
@@ -175,7 +176,8 @@ class CantileverWithTipMass(AssembledStructure, Value):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3,
+    ...     half_width=1.0, damping_ratio=0.02
     ... )
     >>> column.modal().period.round(3)
     array([1.814])

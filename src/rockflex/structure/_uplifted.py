@@ -98,7 +98,8 @@ class UpliftedModes(Value):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> modes = rf.uplifted_modes(frame.rocking(2))
@@ -153,7 +154,8 @@ def uplifted_modes(
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> modes = rf.uplifted_modes(frame.rocking(2))
@@ -359,12 +361,14 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
     ... )
     >>> props = frame.rocking(1)
     >>> omega = rf.uplifted_modes(props).omega
-    >>> bool(abs(rf.frequency_equation(props, omega)[0]) < 1e-6 * props.i_theta * omega[0] ** 2)
+    >>> left = rf.frequency_equation(props, omega)[0]
+    >>> bool(abs(left) < 1e-6 * props.i_theta * omega[0] ** 2)
     True
     """
     pivot = _pivot_at_side(checked_instance("properties", properties, RockingProperties), side)

@@ -40,7 +40,8 @@ class WallFrame(AssembledStructure, Value):
     --------
     >>> import rockflex as rf
     >>> building = rf.WallFrame(
-    ...     height=30.0, mass=2e6, stiffness_parameter=2.0, base_mass=2e5, period=1.0, aspect_ratio=6.0,
+    ...     height=30.0, mass=2e6, stiffness_parameter=2.0, base_mass=2e5,
+    ...     period=1.0, aspect_ratio=6.0,
     ...     damping_ratio=0.03,
     ... )
     >>> building.modal(3).period.round(3)

@@ -42,10 +42,12 @@ class YieldingStories(ModifiedStructure, Value):
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=0.6, aspect_ratio=6.0, damping_ratio=0.03,
     ... )
-    >>> yields = rf.YieldingStories(frame, strengths=[300e3, 250e3, 140e3], post_yield_ratio=0.05)
+    >>> yields = rf.YieldingStories(frame, strengths=[300e3, 250e3, 140e3],
+    ...     post_yield_ratio=0.05)
     >>> pulse = rf.one_sine_pulse(amplitude=4.0, period=0.8)
     >>> rf.simulate(yields, pulse, free_vibration=5.0).ductility.round(2)
     array([2.35, 1.83, 3.26])

@@ -351,7 +351,8 @@ class InitialState(Value):
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
     >>> start = rf.InitialState(rotation=0.1)
-    >>> response = rf.simulate(block, rf.quiet_motion(5.0), "rigid", initial=start)
+    >>> response = rf.simulate(block, rf.quiet_motion(5.0), "rigid",
+    ...     initial=start)
     >>> round(response.max_rotation, 3)
     0.1
     """

@@ -64,8 +64,10 @@ def frequency_ratios(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
-    >>> rf.frequency_ratios(frame, [2.0, 10.0], n_modes=1)[["model", "aspect_ratio", "ratio"]].round(2)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> rf.frequency_ratios(frame, [2.0, 10.0],
+    ...     n_modes=1)[["model", "aspect_ratio", "ratio"]].round(2)
         model  aspect_ratio  ratio
     0  2DOF-S           2.0   1.85
     1  2DOF-S          10.0   7.67
@@ -133,7 +135,8 @@ class SecondMode:
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> second = rf.modal_combination(frame, pulse).second
     >>> round(second.displacement, 4)
@@ -162,7 +165,8 @@ class CombinedPeaks:
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> peaks = rf.modal_combination(frame, pulse)
     >>> round(peaks.max_top_displacement, 4)
@@ -238,7 +242,8 @@ def modal_combination(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> peaks = rf.modal_combination(frame, pulse)
     >>> round(peaks.max_base_shear / peaks.rocking.max_base_shear, 3)

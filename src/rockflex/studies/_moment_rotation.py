@@ -93,12 +93,15 @@ def moment_rotation(
     --------
     >>> import rockflex as rf
     >>> wall = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3, half_width=1.5, damping_ratio=0.02
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3,
+    ...     half_width=1.5, damping_ratio=0.02
     ... )
     >>> fuse = rf.YieldingDissipator(stiffness=60e6, yield_force=150e3)
-    >>> held = rf.Restrained(wall, [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
+    >>> held = rf.Restrained(wall,
+    ...     [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
     >>> curve = rf.moment_rotation(held, [0.0, 0.02, 0.0])
-    >>> print((curve.to_frame()[["rotation", "moment", "element_force_2"]] / [1.0, 1e3, 1e3]).round(4))
+    >>> print((curve.to_frame()[["rotation", "moment",
+    ...     "element_force_2"]] / [1.0, 1e3, 1e3]).round(4))
        rotation    moment  element_force_2
     0    0.0000     0.000              0.0
     1    0.0000  1332.900              0.0
@@ -109,9 +112,11 @@ def moment_rotation(
 
     The same wall without elements on a bed of soil: a part of the base is lifted beyond M = W B/3, 294 kN m.
 
-    >>> soil = rf.Ground(springs=rf.winkler_bed(1.5, 2.0, 100e6, n=100), base_inertia=8e3)
+    >>> soil = rf.Ground(springs=rf.winkler_bed(1.5, 2.0, 100e6, n=100),
+    ...     base_inertia=8e3)
     >>> push = rf.moment_rotation(wall, [0.0, 0.005], ground=soil)
-    >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(3))
+    >>> print((push.uplift_moments / 1e3).round(1),
+    ...     push.contact_length[-1].round(3))
     [294.] 1.085
     """
     path = checked_finite_vector("rotations", rotations, "rad")

@@ -54,10 +54,12 @@ def pushover(
     --------
     >>> import rockflex as rf
     >>> frame = rf.Frame(
-    ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3,
+    ...     stiffness_ratio=float("inf"),
     ...     period=0.6, aspect_ratio=6.0, damping_ratio=0.03,
     ... )
-    >>> push = rf.pushover(rf.YieldingStories(frame, [150e3, 120e3, 70e3], 0.05), top_displacement=0.1, lifts=False)
+    >>> push = rf.pushover(rf.YieldingStories(frame, [150e3, 120e3, 70e3], 0.05),
+    ...     top_displacement=0.1, lifts=False)
     >>> [(each.name, round(each.base_shear / 1e3)) for each in push.events]
     [('story 2 yields', 150), ('story 1 yields', 150), ('story 3 yields', 157)]
     >>> round(push.fit().bouc_wen.yield_displacement, 4)

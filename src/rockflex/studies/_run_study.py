@@ -116,7 +116,8 @@ def run_study(
     Examples
     --------
     >>> import rockflex as rf
-    >>> study = rf.PopulationStudy(pairs=3, seed=1, records={"suites": ["el-centro-1940"]})
+    >>> study = rf.PopulationStudy(pairs=3, seed=1,
+    ...     records={"suites": ["el-centro-1940"]})
     >>> rf.run_study(study)[["pair", "n_stories", "status_mdof"]]
        pair  n_stories status_mdof
     0     0          4     rocking
@@ -166,7 +167,8 @@ def fill_study(
     --------
     >>> import tempfile
     >>> import rockflex as rf
-    >>> study = rf.PopulationStudy(pairs=6, seed=1, runs_per_chunk=4, records={"suites": ["el-centro-1940"]})
+    >>> study = rf.PopulationStudy(pairs=6, seed=1, runs_per_chunk=4,
+    ...     records={"suites": ["el-centro-1940"]})
     >>> with tempfile.TemporaryDirectory() as path:
     ...     rf.fill_study(study, path, share=(1, 2)).missing()
     ...     rf.fill_study(study, path).finished
@@ -225,7 +227,8 @@ def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> f
     Examples
     --------
     >>> import rockflex as rf
-    >>> study = rf.PopulationStudy(pairs=3, seed=1, records={"suites": ["el-centro-1940"]})
+    >>> study = rf.PopulationStudy(pairs=3, seed=1,
+    ...     records={"suites": ["el-centro-1940"]})
     >>> rf.estimate_time(study) < 60.0
     True
     """

@@ -161,7 +161,8 @@ def simulate(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> response = rf.simulate(frame, pulse, "2DOF-S")
     >>> response.status, round(response.max_rotation, 4)
@@ -241,9 +242,11 @@ def simulate_many(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0))
+    >>> table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"],
+    ...     scales=(0.5, 1.0))
     >>> table[["model", "scale", "status"]]
         model  scale   status
     0  2DOF-S    0.5  rocking
@@ -364,8 +367,10 @@ def simulate_set(
     Examples
     --------
     >>> import rockflex as rf
-    >>> chosen = rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0), per_event=1)
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> chosen = rf.load_suite("fema-p695-far-field").select(
+    ...     rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0), per_event=1)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> rf.simulate_set(frame, chosen, "2DOF-S", rule="ec8")
     RecordSet(2DOF-S under 7 records, 0 overturned, rule='ec8')
     """

@@ -95,7 +95,8 @@ def rocking_spectrum(
     --------
     >>> import rockflex as rf
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> rf.rocking_spectrum(pulse, [0.2], [2.0, 4.0])[["period", "status", "relative_rotation"]].round(3)
+    >>> rf.rocking_spectrum(pulse, [0.2],
+    ...     [2.0, 4.0])[["period", "status", "relative_rotation"]].round(3)
        period      status  relative_rotation
     0     2.0  overturned              7.854
     1     4.0     rocking              0.273
@@ -162,7 +163,8 @@ class OverturningScales(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0), "2DOF-C")
     >>> found.impacts
@@ -217,7 +219,8 @@ def overturning_scales(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> found = rf.overturning_scales(frame, pulse, (0.5, 20.0))
     >>> round(found.lowest, 3), found.impacts
@@ -291,7 +294,8 @@ def overturning_spectrum(
     --------
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
-    >>> table = rf.overturning_spectrum(block, rf.one_sine_pulse, [3.0], relative_amplitudes=(1.0, 10.0))
+    >>> table = rf.overturning_spectrum(block, rf.one_sine_pulse, [3.0],
+    ...     relative_amplitudes=(1.0, 10.0))
     >>> table[["frequency_ratio", "lowest"]].round(3)
        frequency_ratio  lowest
     0              3.0   1.382

@@ -30,10 +30,13 @@ class CloudStudy(LimitKeys, StructuresStudySpec):
     Examples
     --------
     >>> import rockflex as rf
-    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
-    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3,
+    ...     "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0,
+    ...     "damping_ratio": 0.02}
     >>> study = rf.CloudStudy(
-    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, scales=[1.0, 2.0]
+    ...     structures=[{"name": "frame", "frame": table}],
+    ...     records={"suites": ["el-centro-1940"]}, scales=[1.0, 2.0]
     ... )
     >>> study.plan().n_runs
     2
@@ -134,9 +137,11 @@ def run_cloud(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> rf.run_cloud(frame, pulse, "2DOF-S", scales=(0.5, 1.0))[["structure", "scale", "pga", "status"]]
+    >>> rf.run_cloud(frame, pulse, "2DOF-S",
+    ...     scales=(0.5, 1.0))[["structure", "scale", "pga", "status"]]
       structure  scale  pga   status
     0        S1    0.5  1.5  rocking
     1        S1    1.0  3.0  rocking

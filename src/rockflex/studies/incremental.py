@@ -125,10 +125,13 @@ class IncrementalStudy(StructuresStudySpec):
     Examples
     --------
     >>> import rockflex as rf
-    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
-    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3,
+    ...     "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0,
+    ...     "damping_ratio": 0.02}
     >>> study = rf.IncrementalStudy(
-    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, largest_scale=5.0
+    ...     structures=[{"name": "frame", "frame": table}],
+    ...     records={"suites": ["el-centro-1940"]}, largest_scale=5.0
     ... )
     >>> round(study.plan().scales[1], 3)
     0.115
@@ -284,9 +287,11 @@ def run_incremental(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> runs = rf.run_incremental(frame, pulse, "2DOF-S", growth=1.5, tolerance=0.05)
+    >>> runs = rf.run_incremental(frame, pulse, "2DOF-S", growth=1.5,
+    ...     tolerance=0.05)
     >>> round(float(runs["first_overturning_scale"].iloc[0]), 2)
     2.56
     """
@@ -320,10 +325,13 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
-    >>> runs = rf.run_incremental({"A": frame}, pulse, "2DOF-S", growth=1.5, tolerance=0.05)
-    >>> rf.incremental_capacities(runs, "pga")[["structure", "model", "capacity", "censored"]].round(2)
+    >>> runs = rf.run_incremental({"A": frame}, pulse, "2DOF-S", growth=1.5,
+    ...     tolerance=0.05)
+    >>> rf.incremental_capacities(runs, "pga")[["structure", "model", "capacity",
+    ...     "censored"]].round(2)
       structure   model  capacity  censored
     0         A  2DOF-S      7.69     False
     """

@@ -209,12 +209,16 @@ class MonteCarloStudy(LimitKeys, RunsStudySpec):
     >>> import rockflex as rf
     >>> study = rf.MonteCarloStudy(
     ...     count=1000,
-    ...     variables={"height": {"uniform": [10.0, 40.0]}, "fuse": {"lognormal": [0.3, 0.4]}},
+    ...     variables={"height": {"uniform": [10.0, 40.0]},
+    ...     "fuse": {"lognormal": [0.3, 0.4]}},
     ...     structure={
     ...         "wall_frame": {
-    ...             "height": "= height", "mass": "= 2e4 * height", "stiffness_parameter": 0.0, "base_mass": 4e4,
-    ...             "period": "= 0.05 * height**0.75", "aspect_ratio": 5.0, "damping_ratio": 0.03, "n_modes": 3},
-    ...         "elements": [{"kind": "yielding_dissipator", "stiffness": "= 50 * weight / half_width",
+    ...             "height": "= height", "mass": "= 2e4 * height",
+    ...             "stiffness_parameter": 0.0, "base_mass": 4e4,
+    ...             "period": "= 0.05 * height**0.75", "aspect_ratio": 5.0,
+    ...             "damping_ratio": 0.03, "n_modes": 3},
+    ...         "elements": [{"kind": "yielding_dissipator",
+    ...         "stiffness": "= 50 * weight / half_width",
     ...                       "yield_force": "= fuse * weight"}]},
     ...     records={"suites": ["fema-p695-far-field"]},
     ...     records_per_structure=4,

@@ -181,7 +181,8 @@ class Progress:
     Examples
     --------
     >>> import rockflex as rf
-    >>> study = rf.PopulationStudy(pairs=3, seed=1, runs_per_chunk=2, records={"suites": ["el-centro-1940"]})
+    >>> study = rf.PopulationStudy(pairs=3, seed=1, runs_per_chunk=2,
+    ...     records={"suites": ["el-centro-1940"]})
     >>> seen = []
     >>> table = rf.run_study(study, progress=seen.append)
     >>> seen[-1]

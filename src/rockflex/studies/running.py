@@ -43,7 +43,8 @@ def running(workers: SupportsIndex | None = None, work_limit: WorkLimit = "defau
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> with rf.running(workers=2, work_limit=5.0):
     ...     table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"])

@@ -31,10 +31,13 @@ class StripeStudy(LimitKeys, StructuresStudySpec):
     Examples
     --------
     >>> import rockflex as rf
-    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
-    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3,
+    ...     "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0,
+    ...     "damping_ratio": 0.02}
     >>> study = rf.StripeStudy(
-    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ...     structures=[{"name": "frame", "frame": table}],
+    ...     records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
     ... )
     >>> rf.run_study(study)[["level", "pgv"]].round(3)
        level  pgv
@@ -117,12 +120,16 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
     Examples
     --------
     >>> import rockflex as rf
-    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
-    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3,
+    ...     "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0,
+    ...     "damping_ratio": 0.02}
     >>> study = rf.StripeStudy(
-    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ...     structures=[{"name": "frame", "frame": table}],
+    ...     records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
     ... )
-    >>> rf.stripe_counts(rf.run_study(study), "uplift")[["level", "n_exceeding", "n_total"]]
+    >>> rf.stripe_counts(rf.run_study(study),
+    ...     "uplift")[["level", "n_exceeding", "n_total"]]
        level  n_exceeding  n_total
     0    0.2            1        1
     1    0.4            1        1

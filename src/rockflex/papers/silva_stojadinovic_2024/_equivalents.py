@@ -50,7 +50,8 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
     Examples
     --------
     >>> import rockflex as rf
-    >>> rf.equivalent_2hz_long_base(base_mass_ratio=0.1, damping_ratio=0.01).effective_height.round(3).tolist()
+    >>> rf.equivalent_2hz_long_base(base_mass_ratio=0.1,
+    ...     damping_ratio=0.01).effective_height.round(3).tolist()
     [0.887, 0.228]
     """
     heavy = checked_positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
@@ -117,7 +118,8 @@ def equivalent_s1(
     Examples
     --------
     >>> import rockflex as rf
-    >>> p = rf.equivalent_s1(base_mass_ratio=0.3, damping_ratio=0.02, width_ratio=0.2, effective_height=1.0)
+    >>> p = rf.equivalent_s1(base_mass_ratio=0.3, damping_ratio=0.02,
+    ...     width_ratio=0.2, effective_height=1.0)
     >>> p.n_modes, round(6.2832 / float(p.omega[0]), 3)
     (5, 0.11)
     """

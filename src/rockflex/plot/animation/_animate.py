@@ -96,7 +96,8 @@ def animate(
     >>> import tempfile
     >>> from pathlib import Path
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
     >>> file = Path(tempfile.mkdtemp()) / "pulse.gif"

@@ -71,8 +71,10 @@ class ProjectResults(Value):
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
     >>> pulse = rf.one_sine_pulse(amplitude=4.0, period=1.0)
-    >>> results = rf.Project({"block": block}, pulse, "rigid", limits=rf.CheckLimits(rotation_ratio=0.5)).run().results
-    >>> results.checks.loc[results.checks["limit"].notna(), ["structure", "name", "ok"]].values.tolist()
+    >>> results = rf.Project({"block": block}, pulse, "rigid",
+    ...     limits=rf.CheckLimits(rotation_ratio=0.5)).run().results
+    >>> results.checks.loc[results.checks["limit"].notna(),
+    ...     ["structure", "name", "ok"]].values.tolist()
     [['block', 'rotation', True], ['block', 'rotation over α', True]]
     """
 
@@ -125,10 +127,13 @@ class Project(HtmlTable, Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
     >>> tied = rf.Restrained(frame, rf.Tendon(initial_force=100e3, stiffness=5e6))
-    >>> pulses = {f"T = {t} s": rf.one_sine_pulse(amplitude=3.0, period=t) for t in (0.5, 0.6, 0.7)}
-    >>> project = rf.Project({"free": frame, "tied": tied}, pulses, rule="ec8", head={"author": "A. Engineer"}).run()
+    >>> pulses = {f"T = {t} s": rf.one_sine_pulse(amplitude=3.0, period=t)
+    ...     for t in (0.5, 0.6, 0.7)}
+    >>> project = rf.Project({"free": frame, "tied": tied}, pulses, rule="ec8",
+    ...     head={"author": "A. Engineer"}).run()
     >>> project
     Project('free', 'tied' under 3 records: 6 runs, 0 checks failed)
     >>> path = project.save("pier.rockflex")
@@ -404,7 +409,8 @@ def read_project(path: str | Path) -> Project:
     --------
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
-    >>> project = rf.Project({"block": block}, rf.one_sine_pulse(amplitude=4.0, period=1.0), "rigid")
+    >>> project = rf.Project({"block": block},
+    ...     rf.one_sine_pulse(amplitude=4.0, period=1.0), "rigid")
     >>> rf.read_project(project.save("block.rockflex"))
     Project('block' under 1 record: not run)
     """

@@ -119,12 +119,15 @@ def write_report(
     >>> import tempfile
     >>> from pathlib import Path
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> pulse = rf.ricker_pulse(4.0, 0.6)
-    >>> runs = [rf.simulate(frame, pulse, model, output="history") for model in ("2DOF-S", "MDOF-S", "fixed")]
+    >>> runs = [rf.simulate(frame, pulse, model, output="history")
+    ...     for model in ("2DOF-S", "MDOF-S", "fixed")]
     >>> folder = Path(tempfile.mkdtemp())
-    >>> rf.write_report(runs, folder / "report.html", structure=frame, motion=pulse, friction=0.5).name
+    >>> rf.write_report(runs, folder / "report.html", structure=frame,
+    ...     motion=pulse, friction=0.5).name
     'report.html'
     """
     target = checked_report_path("path", path)

@@ -53,7 +53,8 @@ def read_structure(path: str | Path) -> Built:
     --------
     >>> import rockflex as rf
     >>> from pathlib import Path
-    >>> length = Path("block.toml").write_text("block = { slenderness = 0.2, half_diagonal = 2.5, mass = 5e3 }")
+    >>> length = Path("block.toml").write_text(
+    ...     "block = { slenderness = 0.2, half_diagonal = 2.5, mass = 5e3 }")
     >>> round(rf.read_structure("block.toml").resisting_moment)  # m g b in N m
     24362
     """

@@ -70,15 +70,20 @@ class BestDesign(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
-    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
-    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0],
+    ...     refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(
+    ...     half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost,
+    ...     model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> found = rf.best_design(runs, targets, cost)
-    >>> found.designs.loc[found.best, ["half_width", "tendon_factor", "dissipator_factor"]].map(float).tolist()
+    >>> found.designs.loc[found.best, ["half_width", "tendon_factor",
+    ...     "dissipator_factor"]].map(float).tolist()
     [2.5, 1.5, 1.0]
     """
 
@@ -126,15 +131,20 @@ def best_design(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
-    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
-    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0],
+    ...     refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(
+    ...     half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost,
+    ...     model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> found = rf.best_design(runs, targets, cost)
-    >>> print(f"{found.designs.loc[found.best, 'half_width']:.3g} m, {found.governs}")
+    >>> width = found.designs.loc[found.best, "half_width"]
+    >>> print(f"{width:.3g} m, {found.governs}")
     2.5 m, 0.01 rad at pgv = 0.5
     """
     import pandas as pd
@@ -332,13 +342,17 @@ def trade_off(found: BestDesign, variable: str = "half_width") -> "pd.DataFrame"
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
-    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
-    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0],
+    ...     refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(
+    ...     half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost,
+    ...     model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> curve = rf.trade_off(rf.best_design(runs, targets, cost))
     >>> curve.columns.tolist()
     ['half_width', 'tendon_factor', 'dissipator_factor', 'prestress', 'dissipator_force', 'cost', 'governs']

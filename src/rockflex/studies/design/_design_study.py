@@ -159,10 +159,12 @@ class DesignStudy(StructuresStudySpec):
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1e9,
+    >>> frame = {"n_stories": 3, "story_height": 3.0, "story_mass": 40e3,
+    ...     "base_mass": 40e3, "stiffness_ratio": 1e9,
     ...          "period": 0.6, "aspect_ratio": 6.0, "damping_ratio": 0.02}
     >>> study = rf.DesignStudy(
-    ...     structures=[{"frame": frame}], records={"suites": ["el-centro-1940"]}, half_widths=[1.0, 1.5], level=0.5)
+    ...     structures=[{"frame": frame}], records={"suites": ["el-centro-1940"]},
+    ...     half_widths=[1.0, 1.5], level=0.5)
     >>> study.plan().columns["structure"]
     ['B = 1 m', 'B = 1.5 m']
     """
@@ -378,10 +380,12 @@ def run_design(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5],
+    ...     models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> len(runs)
     16
     >>> runs["structure"].cat.categories.tolist()
@@ -458,13 +462,17 @@ def search_design(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
-    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
-    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0],
+    ...     refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(
+    ...     half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost,
+    ...     model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> runs.groupby("round")["structure"].nunique().tolist()
     [9, 8]
     """

@@ -78,10 +78,12 @@ def design_table(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
-    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5], models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> runs = rf.run_design(frame, pulses, half_widths=[1.0, 1.5],
+    ...     models="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
     >>> table = rf.design_table(runs, 0.005, at=0.5, confidence=None)
     >>> table["half_width"].tolist()
     [1.0, 1.5]
@@ -142,11 +144,13 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     --------
     >>> import rockflex as rf
     >>> import pandas as pd
-    >>> facts = {"model": "MDOF-S", "tendon": "no tendon", "prestress_ratio": 0.0, "stiffness_ratio": 0.0}
+    >>> facts = {"model": "MDOF-S", "tendon": "no tendon", "prestress_ratio": 0.0,
+    ...     "stiffness_ratio": 0.0}
     >>> values = {"probability": [0.4, 0.1, 0.05], "high": [0.5, 0.2, 0.1]}
     >>> table = pd.DataFrame({"half_width": [1.0, 1.5, 2.0], **values, **facts})
     >>> found = rf.smallest_width(table, target=0.2).iloc[0]
-    >>> print(f"{found.half_width:.3g}, {found.half_width_upper:.3g}, {found.outcome}")
+    >>> print(f"{found.half_width:.3g}, {found.half_width_upper:.3g},",
+    ...     found.outcome)
     1.25, 1.5, met
     """
     import pandas as pd

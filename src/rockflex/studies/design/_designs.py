@@ -52,7 +52,8 @@ class TendonLevel:
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3,
+    ...     base_mass=40e3, stiffness_ratio=1e9,
     ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     >>> level = rf.TendonLevel(prestress_ratio=0.2, stiffness_ratio=0.5)
     >>> (tendon,) = level.held(frame.rocking()).tendons
@@ -218,7 +219,8 @@ class DesignSearch:
     Examples
     --------
     >>> import rockflex as rf
-    >>> search = rf.DesignSearch([1.0, 1.5, 2.0], tendon_factors=[0.5, 1.0, 2.0], refinements=2)
+    >>> search = rf.DesignSearch([1.0, 1.5, 2.0], tendon_factors=[0.5, 1.0, 2.0],
+    ...     refinements=2)
     >>> search.n_first, search.n_designs
     (9, 25)
     """

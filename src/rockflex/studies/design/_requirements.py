@@ -47,8 +47,10 @@ class DesignCost:
     Examples
     --------
     >>> import rockflex as rf
-    >>> cost = rf.DesignCost(half_width=100.0, prestress=2e-5, dissipator_force=1e-4)
-    >>> print(f"{cost.of(half_width=2.0, prestress=1e6, dissipator_force=4e5):.4g}")
+    >>> cost = rf.DesignCost(half_width=100.0, prestress=2e-5,
+    ...     dissipator_force=1e-4)
+    >>> price = cost.of(half_width=2.0, prestress=1e6, dissipator_force=4e5)
+    >>> print(f"{price:.4g}")
     260
     """
 

@@ -211,7 +211,8 @@ class StudyFolder:
     >>> import pyarrow as pa
     >>> import rockflex as rf
     >>> path = tempfile.mkdtemp()
-    >>> with rf.StudyFolder.open(path, {"seed": 1}, n_chunks=2, versions={"rockflex": "1"}) as folder:
+    >>> with rf.StudyFolder.open(path, {"seed": 1}, n_chunks=2,
+    ...     versions={"rockflex": "1"}) as folder:
     ...     part = folder.write(0, pa.table({"run": [0, 1]}))
     >>> folder = rf.StudyFolder.load(path)
     >>> folder.finished, folder.missing()

@@ -61,7 +61,8 @@ class PopulationStatistics(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12,
+    ...     seed=1)
     >>> rf.population_statistics(pairs, n_resamples=50).n_failed
     0
     """
@@ -182,7 +183,8 @@ def population_statistics(
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12,
+    ...     seed=1)
     >>> found = rf.population_statistics(pairs, n_resamples=50)
     >>> int(found.outcomes.loc["rocking", "rocking"])
     10

@@ -148,7 +148,8 @@ class PopulationStudy(StudySpec):
     Examples
     --------
     >>> import rockflex as rf
-    >>> rf.PopulationStudy(pairs=1000, records={"suites": ["el-centro-1940"]}).plan().n_runs
+    >>> rf.PopulationStudy(pairs=1000,
+    ...     records={"suites": ["el-centro-1940"]}).plan().n_runs
     2000
     """
 
@@ -359,7 +360,8 @@ def run_population(
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=3, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=3,
+    ...     seed=1)
     >>> pairs[["pair", "n_stories", "behaviour", "status_mdof", "status_2dof"]]
        pair  n_stories behaviour status_mdof status_2dof
     0     0          4   flexure     rocking     rocking

@@ -109,7 +109,8 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12,
+    ...     seed=1)
     >>> len(rf.plot_population(pairs).axes)
     6
     """
@@ -196,7 +197,8 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12,
+    ...     seed=1)
     >>> figure = rf.plot_agreement(pairs)
     >>> [axes.get_title() for axes in figure.axes[:3]]
     ['no uplift', 'rocking', 'rocking']
@@ -341,7 +343,8 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     Examples
     --------
     >>> import rockflex as rf
-    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12, seed=1)
+    >>> pairs = rf.run_population(rf.load_suite("el-centro-1940"), pairs=12,
+    ...     seed=1)
     >>> len(rf.plot_modal_combination(pairs).axes)
     4
     """
