@@ -10,7 +10,7 @@ from rockflex.foundation.checks import checked_finite, checked_finite_vector
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import shown
 from rockflex.models._elements import CLOSED, RIGHT
-from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
+from rockflex.models._impact import ImpactLaw, Rebound, Restitution, SidedRestitution, VVELSimplified
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._rocking import RockingProperties
@@ -104,7 +104,14 @@ def impact_law_of_side(law: ImpactLaw, side: int) -> ImpactLaw:
 
 def shortest_excursion(law: ImpactLaw) -> float:
     """Return the duration in s below which an excursion after an impact does not count."""
-    return law.shortest_excursion if isinstance(law, Restitution) else Restitution(0.0).shortest_excursion
+    return law.shortest_excursion if isinstance(law, Restitution | Rebound) else Restitution(0.0).shortest_excursion
+
+
+def share_passed(law: ImpactLaw) -> float | None:
+    """Return the share of the rotation's velocity that goes on, negative if it turns back; None if a law says more."""
+    if isinstance(law, VVELSimplified):
+        return 0.0
+    return law.e if isinstance(law, Restitution) else -law.e if isinstance(law, Rebound) else None
 
 
 def velocities_after(

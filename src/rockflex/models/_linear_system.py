@@ -24,8 +24,13 @@ from rockflex.models._elements import (
     is_in_reach,
     rate_of_elongation_row,
 )
-from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
+from rockflex.models._landing import (
+    impact_law_of_side,
+    landing_jump,
+    rotation_acceleration_by_rows,
+    share_passed,
+    shortest_excursion,
+)
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, joined_quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
@@ -339,7 +344,7 @@ class LinearOnRigidGround(LinearSystemBase):
         moment = model.contact_moment(key)
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = internal_places(model.elements)
-        for turn in (RIGHT, LEFT):
+        for turn in model.sides[1:] if side == CLOSED else (RIGHT, LEFT):
             following = branches_of_moving_elements(p, model.elements, (side or turn, *base[1:]), turn)
             equations, row = base_equations_of(p, model.elements, following, model.gravity), moment.copy()
             for place in self.bars:
@@ -385,22 +390,24 @@ class LinearOnRigidGround(LinearSystemBase):
     def landing(self, key: Key) -> Event:
         """The impact, after which rocking may go on to the other side."""
         model, side = self.model, key[0]
-        contact, other = self.beside(key, CLOSED), self.beside(key, -side)
-        row, law = side * self.unit(model.layout.rotation), impact_law_of_side(model.law, side)
-        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+        contact, law = self.beside(key, CLOSED), impact_law_of_side(model.law, side)
+        row, passed = side * self.unit(model.layout.rotation), share_passed(law)
+        if passed == 0.0:
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
-        if not isinstance(law, Restitution) or self._gains(side, law):
+        onto = side if passed is not None and passed < 0.0 else -side
+        if passed is None or self._gains(side, onto, passed):
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
             turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
             jump = landing_jump(
                 model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
             )
             return self.event("impact", row, contact, QUARTER_TURN, jump)
-        back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
-        back[model.layout.spin] += 2.0 * side
+        other = self.beside(key, onto)
+        back = -onto * shortest_excursion(law) * self.turn(other)  # what θ' would lose within the shortest excursion
+        back[model.layout.spin] -= 2.0 * onto
         n = self.layout.size
         rest = Rest(-back[:n], contact, -float(back[n + 1]), -float(back[n]), self.struck(0.0))
-        return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(law.e), rest=rest)
+        return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(passed), rest=rest)
 
     def beside(self, key: Key, side: int) -> Key:
         """The phase after an impact, on one side or in contact."""
@@ -427,9 +434,9 @@ class LinearOnRigidGround(LinearSystemBase):
         found[layout.spin, layout.spin] = e
         return found
 
-    def _gains(self, side: int, law: Restitution) -> bool:
+    def _gains(self, side: int, onto: int, passed: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return law.e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
+        return passed**2 * self.model.free_inertia(onto) > self.model.free_inertia(side)
 
     def slip(self, key: Key) -> list[Event]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""

@@ -10,8 +10,14 @@ from rockflex.engine.tables import by_rows
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.constants import GRAVITY
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
-from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
+from rockflex.models._impact import VVELSimplified
+from rockflex.models._landing import (
+    impact_law_of_side,
+    landing_jump,
+    rotation_acceleration_by_rows,
+    share_passed,
+    shortest_excursion,
+)
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 from rockflex.models._rocking_model import RockingModel
@@ -172,7 +178,7 @@ class RigidGround:
         if not self.model.lifts:
             return ()
         found, moment = list[Event](), self.moment()
-        for side in (RIGHT, LEFT):
+        for side in self.model.sides[1:]:
             weight = self.m_tot * self.gravity * self.pivots[side][1]
             row = side * moment
             scale = np.where(weight > 0.0, weight, 1.0)
@@ -187,21 +193,22 @@ class RigidGround:
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
         row, law = side * self.rotation()[:, 0, :-2], impact_law_of_side(self.model.law, side)
-        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+        passed = share_passed(law)
+        if passed == 0.0:
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
-        if not isinstance(law, Restitution) or self.gains(side, law):
+        onto = side if passed is not None and passed < 0.0 else -side
+        if passed is None or self.gains(side, onto, passed):
             turns = {each: (self.turn(each)[0], self.turn_by_weight(each)[0]) for each in (RIGHT, LEFT)}
             model, keys = self.model, {CLOSED: CONTACT, **ALONE}
             jump = landing_jump(
                 model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
             )
             return Event("impact", row, CONTACT, jump=jump)
-        turn = self.turn(-side)
-        back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
-        back[:, -3] += 2.0 * side
-        more = law.shortest_excursion * side * self.turn_by_weight(-side)
+        back = -onto * shortest_excursion(law) * self.turn(onto)  # what θ' would lose within the shortest excursion
+        back[:, -3] -= 2.0 * onto
+        more = -onto * shortest_excursion(law) * self.turn_by_weight(onto)
         rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0), -more[:, :-2], -more[:, -1])
-        return Event("impact", row, ALONE[-side], jump=self.struck(law.e), rest=rest)
+        return Event("impact", row, ALONE[onto], jump=self.struck(passed), rest=rest)
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
@@ -211,6 +218,6 @@ class RigidGround:
         found[:, N : 2 * N, -1], found[:, -1, -1] = (1.0 - e) * self.height, e
         return found
 
-    def gains(self, side: int, law: Restitution) -> bool:
+    def gains(self, side: int, onto: int, passed: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return bool((law.e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
+        return bool((passed**2 * self.free_inertia(onto) > self.free_inertia(side)).any())

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated, ClassVar, SupportsIndex
+from typing import Annotated, ClassVar, Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,6 +40,7 @@ from rockflex.structure._rocking_checks import (
     checked_eccentricity,
     checked_floor_modes,
     checked_modal_values,
+    checked_restitution,
     checked_stories,
     checked_top_height,
     checked_translational_inertia,
@@ -208,6 +209,26 @@ class RockingProperties(HtmlTable, Value):
         tuple[YieldingStory, ...],
         Described("stories that yield", in_file=False, note="They need the `floors`; see `YieldingStories`."),
     ]
+    restitution: Annotated[
+        float | None,
+        Described(
+            "the share of the rotation's velocity that an impact leaves, of a body without modes",
+            rule="zero or positive",
+            note="At most 1; of what opens to one side, that with which it turns back. Default: that of the impact law "
+            "of the model.",
+            low=0.0,
+            high=1.0,
+        ),
+    ]
+    opens: Annotated[
+        Literal["both", "right", "left"],
+        Described(
+            "the side to which the base can rotate",
+            in_file=False,
+            note='Both, or one: "right" is about the right edge, where θ > 0, and a wall behind holds the other side. '
+            "See `OneSided`.",
+        ),
+    ]
 
     def __init__(
         self,
@@ -228,6 +249,8 @@ class RockingProperties(HtmlTable, Value):
         eccentricity: float = 0.0,
         leaning_mass: float = 0.0,
         stories: Iterable[YieldingStory] = (),
+        restitution: float | None = None,
+        opens: Literal["both", "right", "left"] = "both",
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = {"i_theta": i_theta, "l0r": l0r, "m_tot": m_tot, "half_width": half_width}
@@ -247,6 +270,8 @@ class RockingProperties(HtmlTable, Value):
             eccentricity=e,
             leaning_mass=leaning_mass,
             stories=checked_stories(stories, floors, modes["omega"].size),
+            restitution=checked_restitution(restitution, opens, modes["omega"].size),
+            opens=opens,
         )
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":
@@ -301,8 +326,15 @@ class RockingProperties(HtmlTable, Value):
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
-        """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one."""
-        return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
+        """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one, if it opens."""
+        if self.symmetric:
+            return (self.pivot(self.sides[0]),)
+        return tuple(map(self.pivot, self.sides))
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """The sides to which the base can rotate: 1 is right, -1 left; both unless it `opens` to one."""
+        return {"right": (1,), "left": (-1,)}.get(self.opens, (1, -1))
 
     @cached_property
     def weaker_pivot(self) -> Pivot:

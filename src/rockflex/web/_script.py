@@ -244,11 +244,13 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
-    based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
-    wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
-    return lines + [
-        f"structure = rf.{wraps[name]}(structure, {_python_literal(value)})" for name, value in based.items()
-    ]
+    if entry.eccentricity:
+        lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
+    if entry.one_sided is not None:
+        lines.append(f"structure = rf.OneSided(structure, {_python_named_arguments(entry.one_sided.model_dump())})")
+    if elements:
+        lines.append(f"structure = rf.Restrained(structure, {_python_literal(elements)})")
+    return lines
 
 
 def _motion_code_lines(state: PageState, upload_name: str) -> list[str]:

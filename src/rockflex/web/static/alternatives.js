@@ -1,6 +1,6 @@
 // Alternatives that are kept: their list, how their demands differ, and their motion beside that of the present structure.
 
-import { yields } from "./choices.js";
+import { isRigid, yields } from "./choices.js";
 import { clone, decode, h, latest, scrolled, symbol, tableOf } from "./dom.js";
 import { trouble } from "./form.js";
 import { downloads, reports } from "./jobs.js";
@@ -44,7 +44,7 @@ export function alternatives(app, show) {
     const next = clone(app.state);
     for (const name of OWN) delete next[name];
     Object.assign(next, own(app.state.alternatives[i]));
-    const fits = (label) => (label === "rigid") === "block" in next.structure && (next.bouc_wen || !yields(label));
+    const fits = (label) => (label === "rigid") === isRigid(next.structure) && (next.bouc_wen || !yields(label));
     if (!next.cloud.models.every(fits)) next.cloud.models = [next.models[0]];
     if (!fits(next.design.model)) [next.design.model] = next.models;
     app.restore(next);
