@@ -191,3 +191,27 @@ def test_a_wall_behind_holds_what_is_pushed_towards_it() -> None:
     free, held = (rf.pushover(rf.OneSided(FRAME, side=side), 0.2, lifts=True) for side in ("right", "left"))  # pyright: ignore[reportArgumentType]
     assert free.rotation[-1] > 0.0
     assert np.abs(held.rotation).max() == 0.0
+
+
+def test_off_the_middle_the_edge_to_which_it_opens_counts() -> None:
+    moved = rf.Eccentric(WALL, 0.1)
+    for side, place in (("right", 1), ("left", -1)):
+        p = rf.OneSided(moved, "sorrentino", side).rocking()  # pyright: ignore[reportArgumentType]
+        assert p.weaker_pivot == p.pivot(place)
+        assert p.uplift_acceleration == pytest.approx(9.81 * (0.3 - place * 0.1) / 3.0, rel=1e-14)
+        assert len(p.pivots) == 2
+        run = rf.simulate(rf.OneSided(moved, 0.5, side), RECORD.scaled(0.7), "rigid")  # pyright: ignore[reportArgumentType]
+        assert (place * run.rotation).min() >= 0.0
+        assert np.abs(run.energy.residual).max() < 1e-9 * run.energy.input.max()
+
+
+def test_the_command_line_says_to_which_side_it_opens(tmp_path: Any) -> None:
+    from typer.testing import CliRunner
+
+    from rockflex.cli._app import app
+
+    file = tmp_path / "wall.toml"
+    file.write_text("block = { width = 0.6, height = 6.0 }\n[one_sided]\nrestitution = 0.3\nside = 'left'\n")
+    printed = CliRunner().invoke(app, ["modes", str(file)]).stdout
+    assert "Opens to the left alone" in printed
+    assert "0.3" in printed

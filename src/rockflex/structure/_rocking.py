@@ -326,10 +326,8 @@ class RockingProperties(HtmlTable, Value):
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
-        """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one, if it opens."""
-        if self.symmetric:
-            return (self.pivot(self.sides[0]),)
-        return tuple(map(self.pivot, self.sides))
+        """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one."""
+        return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -338,8 +336,11 @@ class RockingProperties(HtmlTable, Value):
 
     @cached_property
     def weaker_pivot(self) -> Pivot:
-        """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal."""
-        return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
+        """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal.
+
+        Of what opens to one side it is the only one about which it rotates.
+        """
+        return min(map(self.pivot, self.sides), key=lambda pivot: pivot.resisting_moment)
 
     @cached_property
     def symmetric(self) -> bool:
@@ -397,12 +398,12 @@ class RockingProperties(HtmlTable, Value):
     @property
     def self_centring(self) -> bool:
         """Whether the base closes against its dissipators about both pivots; see `Pivot.self_centring`."""
-        return all(pivot.self_centring for pivot in self.pivots)
+        return all(pivot.self_centring for pivot in map(self.pivot, self.sides))
 
     @property
     def recentring_ratio(self) -> float:
         """λ of weight and prestress over dissipators, the smaller of both pivots; see `Pivot.recentring_ratio`."""
-        return min(pivot.recentring_ratio for pivot in self.pivots)
+        return min(pivot.recentring_ratio for pivot in map(self.pivot, self.sides))
 
     def recentring_ratio_at(self, rotation: float) -> float:
         """Return λ at a design rotation |θ| in rad, the smaller of both pivots; infinite where no dissipator acts.
@@ -427,7 +428,7 @@ class RockingProperties(HtmlTable, Value):
         """
         turn = checked_positive("rotation", checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
         found: list[float] = []
-        for pivot in self.pivots:
+        for pivot in map(self.pivot, self.sides):
             arms = [(each, each.arm(pivot.arm, pivot.side)) for each in self.elements if not each.attached]
             moments = [(closes(each), element_pushover_force(each, r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
@@ -441,7 +442,7 @@ class RockingProperties(HtmlTable, Value):
 
         For an eccentric base it is the smaller of the two, with the distance of the nearer pivot in place of B.
         """
-        return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
+        return min(pivot.nominal_overturning_rotation for pivot in map(self.pivot, self.sides))
 
     @explaining_overflow("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":
