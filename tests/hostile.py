@@ -140,6 +140,15 @@ def structures() -> Calls:
         "FishBone": (rf.FishBone, BONE | BASE),
         "rigid_block": (rf.rigid_block, {"slenderness": 0.2, "half_diagonal": 2.0, "mass": 1.0}),
         "block of sides": (rf.rigid_block, {"width": 0.6, "height": 2.0, "mass": 250.0}),
+        "rocking_frame": (
+            rf.rocking_frame,
+            {"n_columns": 4, "column_width": 1.6, "column_height": 9.6, "column_mass": 6e4, "cap_mass": 2.4e5},
+        ),
+        "OneSided": (rf.OneSided, {"structure": rf.Frame(**FRAME), "restitution": 0.4, "side": "right"}),
+        "OneSided block": (
+            rf.OneSided,
+            {"structure": rf.rigid_block(0.2, 2.0, 1e3), "restitution": "sorrentino", "side": "left"},
+        ),
         "cosine_shapes": (rf.cosine_shapes, {"height": 10.0, "n_shapes": 2}),
         "Tendon": (
             rf.Tendon,
@@ -191,6 +200,7 @@ def structures() -> Calls:
         "block held": (rf.Restrained, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "elements": rf.Tendon(1e3, 1e5)}),
         "block aside": (rf.Eccentric, {"structure": rf.rigid_block(0.2, 2.0, 1e3), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),
+        "properties to one side": (rf.RockingProperties, PROPERTIES | {"restitution": 0.5, "opens": "right"}),
         "pivot": (p.pivot, {"side": -1}),
         "truncated": (p.truncated, {"n_modes": 1}),
         "modal": (rf.Frame(**FRAME).modal, {"n_modes": 1}),

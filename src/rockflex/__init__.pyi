@@ -142,6 +142,7 @@ from .structure import LumpedStructure as LumpedStructure
 from .structure import ModalProperties as ModalProperties
 from .structure import ModalStructure as ModalStructure
 from .structure import MultilinearBar as MultilinearBar
+from .structure import OneSided as OneSided
 from .structure import PinnedBeam as PinnedBeam
 from .structure import Pivot as Pivot
 from .structure import Restrained as Restrained
@@ -169,6 +170,7 @@ from .structure import gazetas_bed as gazetas_bed
 from .structure import modal_properties as modal_properties
 from .structure import pinned_beam as pinned_beam
 from .structure import rigid_block as rigid_block
+from .structure import rocking_frame as rocking_frame
 from .structure import rocking_properties as rocking_properties
 from .structure import strand_tendon as strand_tendon
 from .structure import structure_warnings as structure_warnings

@@ -129,3 +129,12 @@ def test_a_tendon_that_snaps_falls_to_zero_in_a_slow_push() -> None:
     assert force[~first].max() == 0.0
     with pytest.raises(rf.InputError, match="with stiffness"):
         rf.Tendon(3e4, 0.0, rupture_elongation=0.1)
+
+
+@pytest.mark.parametrize("more", [{}, {"rupture_elongation": 0.02}, {"yield_force": 4e4, "post_yield_ratio": 0.0}])
+def test_a_tie_without_initial_force_is_taut_in_contact_whatever_ran_before(more: dict[str, float]) -> None:
+    tie = rf.Tendon(0.0, 2e6, height=5.8, **more)
+    held = rf.Restrained(rf.rigid_block(width=0.6, height=6.0, mass=7e3), [tie, rf.Tendon(10.0, 2e6, height=5.8)])
+    record = rf.load_suite("fema-p695-near-field-pulse")["NFP-9-a"]
+    first, _, again = (rf.simulate(held, record.scaled(scale), "rigid", "peaks") for scale in (0.3, 0.6, 0.3))
+    assert again.max_rotation == first.max_rotation

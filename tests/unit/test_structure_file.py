@@ -113,7 +113,7 @@ def test_keys_are_the_arguments_of_the_class(write, table, values, make):
 def test_every_kind_is_tried():
     assert set(KINDS) == {
         *("frame", "fish_bone", "wall_frame", "tapered_tower", "cantilever", "beam", "lumped"),
-        *("matrices", "modes", "properties", "block"),
+        *("matrices", "modes", "properties", "block", "rocking_frame"),
     }
 
 
@@ -407,7 +407,7 @@ def test_an_entry_is_written_and_read_again(write):
 def test_one_structure_a_file(failing):
     expected = (
         ": one structure is expected, [frame], [fish_bone], [wall_frame], [tapered_tower], [cantilever], [beam], "
-        "[lumped], [matrices], [modes], [properties] or [block], but {} found."
+        "[lumped], [matrices], [modes], [properties], [block] or [rocking_frame], but {} found."
     )
     assert failing("") == expected.format("none was")
     assert failing(text("lumped", LUMPED) + text("frame", FRAME)) == expected.format("[frame] and [lumped] were")

@@ -96,7 +96,8 @@ def test_what_is_assumed_is_simulated(client) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
 def test_every_preset_answers_on_every_tab(client, preset) -> None:
-    state = client.state(structure=as_json_value(preset["structure"]))
+    rigid = {"models": ["rigid"]} if "block" in preset["structure"] else {}
+    state = client.state(structure=as_json_value(preset["structure"]), **rigid)
     for path in ("/api/structure", "/api/record", "/api/response"):
         json.dumps(client.ask(path, state), allow_nan=False)
 
@@ -314,6 +315,14 @@ def test_an_error_of_the_server_shows_no_traceback(client, monkeypatch) -> None:
     assert answer == {"errors": {"": "An internal error occurred; the log of the server has the details."}}
 
 
+FACADE = {
+    "block": {"width": 0.6, "height": 6.0, "mass": 7e3},
+    "one_sided": {"restitution": 0.4, "side": "left"},
+    "elements": [{"kind": "tendon", "initial_force": 0.0, "stiffness": 2e6, "height": 5.8, "rupture_elongation": 0.02}],
+}
+COLUMNS = {"n_columns": 4, "column_width": 1.6, "column_height": 9.6, "column_mass": 6e4, "cap_mass": 2.4e5}
+
+
 @pytest.mark.slow
 def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -327,6 +336,8 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
         client.state(
             structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}, "eccentricity": 0.1}, models=["rigid"]
         ),
+        client.state(structure=FACADE, models=["rigid"]),
+        client.state(structure={"rocking_frame": COLUMNS}, models=["rigid"]),
         client.state(impact="restitution", restitution=0.4, models=["2DOF-S-BW", "MDOF-S"], bouc_wen=YIELDING),
     ]
     for state in states:

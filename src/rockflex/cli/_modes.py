@@ -214,7 +214,8 @@ def _write_modes(
             from rockflex.plot._figures import save_figure
             from rockflex.plot._structure import plot_mode_shapes
 
-            save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
+            modes = built.modal()  # pyright: ignore[reportAttributeAccessIssue]
+            save_figure(plot_mode_shapes(modes, n_modes=n_modes), stage / "mode-shapes.png")
     console.print_remark(
         f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes")
     )
@@ -260,6 +261,7 @@ def print_modes(
         (True, "Half width of the base, B", p.half_width, ("length",)),
         (p.eccentricity, "Masses to the right of its middle, e", p.eccentricity, ("length",)),
         (p.tendons, "Initial force of the tendons, P", p.prestress, ("force",)),
+        (p.opens != "both", f"Opens to the {p.opens} alone, restitution", p.restitution or 0.0, ("ratio",)),
     )
     wanted = ((name, value, units.of(*quantity)) for asked, name, value, quantity in values if asked)
     cells = [(name, console.number(value / size), unit) for name, value, (size, unit) in wanted]

@@ -192,6 +192,8 @@ def describe_rocking_properties(properties: RockingProperties) -> dict[str, Any]
     described = {name: getattr(properties, name) for name in (*names, *tendons, *held)}
     if properties.elements:
         described["elements"] = describe_elements(properties.elements)
+    if properties.opens != "both":
+        described["opens"] = properties.opens
     if properties.symmetric:
         return described
     pivots = [asdict(each) | {"resisting_moment": each.resisting_moment} for each in properties.pivots]

@@ -12,7 +12,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base_on_ground, model_on_ground
-from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
+from rockflex.models._impact import ImpactLaw, Rebound, Restitution, VVELComplete, VVELSimplified, housner
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
@@ -161,6 +161,7 @@ class Model:
         self._check_missing_mass(kept)
         self._check_leaning(kept)
         self._check_attached(kept, bouc_wen, ground)
+        self._check_one_sided(kept, impact, ground)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact)
@@ -211,6 +212,22 @@ class Model:
                     field="elements",
                 )
 
+    def _check_one_sided(self, kept: RockingProperties, impact: ImpactLaw | None, ground: Ground | None) -> None:
+        if kept.opens == "both":
+            return
+        if impact is not None and not isinstance(impact, Rebound):
+            raise InputError(
+                f"The structure opens to the {kept.opens} alone and turns back at the wall behind it, which no other "
+                "impact law describes. Leave impact out, and give OneSided(structure, restitution=...).",
+                field="impact",
+            )
+        if ground is not None and not ground.rigid:
+            raise InputError(
+                f"The structure opens to the {kept.opens} alone, against a wall behind it, which has no model on "
+                "springs or on ground that it slides on. Leave the ground out.",
+                field="ground",
+            )
+
     def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"
         if not self.lifts:
@@ -242,8 +259,10 @@ class Model:
 
     def _law(self, kept: RockingProperties) -> ImpactLaw:
         """Return the default impact law of the model."""
+        if kept.opens != "both":
+            return Rebound(kept.restitution or 0.0)
         if self.n_modes == 0 and self.lifts:
-            return housner(kept)
+            return housner(kept) if kept.restitution is None else Restitution(kept.restitution)
         if not self.complete or self.closure == "SI":
             return VVELSimplified()
         modal_inertia = float(kept.effective_mass @ kept.effective_height**2)

@@ -13,7 +13,14 @@ from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.shown import shown
 from rockflex.models._elements import CLOSED
 from rockflex.models._fields import Landing
-from rockflex.models._impact import SHORTEST_EXCURSION, ImpactLaw, LandingRule, RuledLaw, takes_displacement
+from rockflex.models._impact import (
+    SHORTEST_EXCURSION,
+    ImpactLaw,
+    LandingRule,
+    Rebound,
+    RuledLaw,
+    takes_displacement,
+)
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._rocking import RockingProperties
@@ -116,6 +123,19 @@ def rotation_acceleration_by_rows(
         return float(row[:-2] @ state + row[-2] * acceleration + row[-1])
 
     return turn
+
+
+def fixed_share(model: RockingModel, side: int) -> tuple[float | None, float]:
+    """Return θ'_a/θ'_b if each landing on a side has the same, and the shortest excursion in s.
+
+    It is negative where the base turns back, and None where a landing depends on the state.
+    """
+    if isinstance(model.law, Rebound):
+        return -model.law.e, model.law.shortest_excursion
+    rule = rule_of_law(model.law, side)
+    if rule is None:
+        return None, SHORTEST_EXCURSION
+    return rule.fixed_share(model.properties, side), rule.shortest_excursion
 
 
 def velocities_after(

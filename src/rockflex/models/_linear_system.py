@@ -27,6 +27,7 @@ from rockflex.models._elements import (
 from rockflex.models._fields import LinearTurn
 from rockflex.models._landing import (
     GUARDED,
+    fixed_share,
     landing_jump,
     landing_of_rule,
     rotation_acceleration_by_rows,
@@ -344,7 +345,7 @@ class LinearOnRigidGround(LinearSystemBase):
         moment = model.contact_moment(key)
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = internal_places(model.elements)
-        for turn in (RIGHT, LEFT):
+        for turn in model.sides[1:] if side == CLOSED else (RIGHT, LEFT):
             following = branches_of_moving_elements(p, model.elements, (side or turn, *base[1:]), turn)
             equations, row = base_equations_of(p, model.elements, following, model.gravity), moment.copy()
             for place in self.bars:
@@ -390,24 +391,26 @@ class LinearOnRigidGround(LinearSystemBase):
     def landing(self, key: Key) -> Event:
         """The impact, after which rocking may go on to the other side."""
         model, side = self.model, key[0]
-        contact, other = self.beside(key, CLOSED), self.beside(key, -side)
-        row, rule = side * self.unit(model.layout.rotation), rule_of_law(model.law, side)
-        share = None if rule is None else rule.fixed_share(model.properties, side)
+        contact, row = self.beside(key, CLOSED), side * self.unit(model.layout.rotation)
+        rule, (share, excursion) = rule_of_law(model.law, side), fixed_share(model, side)
         if share == 0.0:
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
-        if rule is None:
+        onto = side if share is not None and share < 0.0 else -side
+        if rule is None and (share is None or self._gains(side, onto, share)):
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
             turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
             jump = landing_jump(
                 model, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
             )
             return self.event("impact", row, contact, QUARTER_TURN, jump)
-        if share is None or self._gains(side, share):
+        other = self.beside(key, onto)
+        if rule is not None and (share is None or self._gains(side, onto, share)):
             beyond = LinearTurn(self.turn(other), self.turn_by_weight(other), model.layout.spin)
             jump = landing_of_rule(model, side, rule, beyond, self.layout.size)
             return replace(self.event("impact", row, contact, QUARTER_TURN, jump), other=other, noted=GUARDED)
-        back = rule.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
-        back[model.layout.spin] += 2.0 * side
+        assert share is not None  # any other is a jump
+        back = -onto * excursion * self.turn(other)  # what θ' would lose within the shortest excursion
+        back[model.layout.spin] -= 2.0 * onto
         n = self.layout.size
         rest = Rest(-back[:n], contact, -float(back[n + 1]), -float(back[n]), self.struck(0.0))
         return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(share), rest=rest)
@@ -437,9 +440,9 @@ class LinearOnRigidGround(LinearSystemBase):
         found[layout.spin, layout.spin] = e
         return found
 
-    def _gains(self, side: int, e: float) -> bool:
+    def _gains(self, side: int, onto: int, share: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
+        return share**2 * self.model.free_inertia(onto) > self.model.free_inertia(side)
 
 
 @dataclass(frozen=True, eq=False)

@@ -201,6 +201,8 @@ class NonlinearRockingPhases:
         scale = max([abs(each) for each in limits if 0.0 < abs(each) < np.inf], default=1.0)
         name, found = "uplift" if side == CLOSED else "release", list[Event]()
         for row, heavy, after in zip(rows, heavier - rows, following, strict=True):
+            if side == CLOSED and after[0] not in model.sides:
+                continue
             if model.bends(side):  # `RockingField.conditions` has them
                 found.append(Event(name, np.zeros(len(row) - 2), self.following(key, after), scale=scale))
                 continue

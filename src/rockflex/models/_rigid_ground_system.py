@@ -13,6 +13,7 @@ from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._fields import LinearTurn
 from rockflex.models._landing import (
     GUARDED,
+    fixed_share,
     landing_jump,
     landing_of_rule,
     rotation_acceleration_by_rows,
@@ -179,7 +180,7 @@ class RigidGround:
         if not self.model.lifts:
             return ()
         found, moment = list[Event](), self.moment()
-        for side in (RIGHT, LEFT):
+        for side in self.model.sides[1:]:
             weight = self.m_tot * self.gravity * self.pivots[side][1]
             row = side * moment
             scale = np.where(weight > 0.0, weight, 1.0)
@@ -193,11 +194,12 @@ class RigidGround:
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, model, rule = side * self.rotation()[:, 0, :-2], self.model, rule_of_law(self.model.law, side)
-        share = None if rule is None else rule.fixed_share(model.properties, side)
+        row, model = side * self.rotation()[:, 0, :-2], self.model
+        rule, (share, excursion) = rule_of_law(model.law, side), fixed_share(model, side)
         if share == 0.0:
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
-        if rule is None:
+        onto = side if share is not None and share < 0.0 else -side
+        if rule is None and (share is None or self.gains(side, onto, share)):
             turns = {each: (self.turn(each)[0], self.turn_by_weight(each)[0]) for each in (RIGHT, LEFT)}
             jump = landing_jump(
                 model,
@@ -206,17 +208,17 @@ class RigidGround:
                 rotation_acceleration_by_rows(turns),
             )
             return Event("impact", row, CONTACT, jump=jump)
-        if share is None or self.gains(side, share):
+        if rule is not None and (share is None or self.gains(side, onto, share)):
             spin = 2 * self.omega.shape[1] + 1
             beyond = LinearTurn(self.turn(-side)[0], self.turn_by_weight(-side)[0], spin)
             jump = landing_of_rule(model, side, rule, beyond, spin + 1)
             return Event("impact", row, CONTACT, jump=jump, other=ALONE[-side], noted=GUARDED)
-        turn = self.turn(-side)
-        back = rule.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
-        back[:, -3] += 2.0 * side
-        more = rule.shortest_excursion * side * self.turn_by_weight(-side)
+        assert share is not None  # any other is a jump
+        back = -onto * excursion * self.turn(onto)  # what the rotation would lose within the shortest excursion
+        back[:, -3] -= 2.0 * onto
+        more = -onto * excursion * self.turn_by_weight(onto)
         rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0), -more[:, :-2], -more[:, -1])
-        return Event("impact", row, ALONE[-side], jump=self.struck(share), rest=rest)
+        return Event("impact", row, ALONE[onto], jump=self.struck(share), rest=rest)
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
@@ -226,6 +228,6 @@ class RigidGround:
         found[:, N : 2 * N, -1], found[:, -1, -1] = (1.0 - e) * self.height, e
         return found
 
-    def gains(self, side: int, e: float) -> bool:
+    def gains(self, side: int, onto: int, share: float) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
-        return bool((e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
+        return bool((share**2 * self.free_inertia(onto) > self.free_inertia(side)).any())

@@ -427,7 +427,7 @@ class RockingModel(Value):
     @property
     def sides(self) -> tuple[int, ...]:
         """Possible sides of the base: contact, and both pivots if it can lift."""
-        return (CLOSED, RIGHT, LEFT) if self.lifts else (CLOSED,)
+        return (CLOSED, *self.properties.sides) if self.lifts else (CLOSED,)
 
     @property
     def slip_marks(self) -> tuple[int, ...]:

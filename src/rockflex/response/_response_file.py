@@ -55,7 +55,7 @@ PROPERTIES = (
     "zeta",
     "translational_inertia",
 )
-KNOWN_OR_NOT = ("top_height", "base_mass")
+KNOWN = ("top_height", "base_mass", "eccentricity", "leaning_mass", "restitution", "opens")
 LATER: dict[str, Any] = {"guarded_impacts": 0.0, "may_fall": False, "leaning_push": 0.0}  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
@@ -87,7 +87,7 @@ def save_response(
         scalars["lifts"] = model.lifts
         scalars["law"] = _impact_law_to_file(model.law)
         scalars["missing_mass"] = model.missing_mass
-        scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity", "leaning_mass")}
+        scalars |= {name: getattr(model.properties, name) for name in KNOWN}
         if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
@@ -206,7 +206,7 @@ def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> Rocking
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     elements = [_element_from_file(**each) for each in _typed(scalars, "elements", list)]
-    known = {name: scalars[name] for name in (*KNOWN_OR_NOT, "eccentricity", "leaning_mass")}
+    known = {name: scalars[name] for name in KNOWN if name in scalars}
     known["stories"] = [YieldingStory(**each) for each in scalars["stories"]]
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))

@@ -15,11 +15,13 @@ from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
 from rockflex.structure._law_bars import FlagShapedBar, GapBar, MultilinearBar
 from rockflex.structure._leaning import Leaning
+from rockflex.structure._one_sided import OneSided
 from rockflex.structure._participation import rocking_properties
 from rockflex.structure._pivot import Pivot
+from rockflex.structure._rigid_bodies import rigid_block, rocking_frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
-from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
+from rockflex.structure._towers import CantileverWithTipMass, TaperedTower
 from rockflex.structure._uplifted import PinnedBeam, UpliftedModes, frequency_equation, pinned_beam, uplifted_modes
 from rockflex.structure._wall_frame import WallFrame
 from rockflex.structure._yielding_stories import YieldingStories
@@ -49,6 +51,7 @@ __all__ = [
     "ModalProperties",
     "ModalStructure",
     "MultilinearBar",
+    "OneSided",
     "PinnedBeam",
     "Pivot",
     "Restrained",
@@ -76,6 +79,7 @@ __all__ = [
     "modal_properties",
     "pinned_beam",
     "rigid_block",
+    "rocking_frame",
     "rocking_properties",
     "strand_tendon",
     "structure_warnings",

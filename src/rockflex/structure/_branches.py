@@ -11,6 +11,7 @@ from rockflex.foundation.arrays import Array
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
+BARELY = 1e-12  # m: what has no initial force goes slack beyond this, so that it does not do so in full contact
 BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 
@@ -212,7 +213,8 @@ class ElasticElement(WithoutMemory):
         if self.stiffness == 0.0:
             return ()
         slack = branch == SLACK
-        return (BranchLimit(slack, -self.initial_force / self.stiffness, 0.0, ELASTIC if slack else SLACK),)
+        place = -max(self.initial_force / self.stiffness, BARELY)
+        return (BranchLimit(slack, place, 0.0, ELASTIC if slack else SLACK),)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
         del memory
@@ -293,9 +295,9 @@ class YieldingElement(ElementDefaults):
     def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         reach, e0 = self.yield_force / self.stiffness, self.stretched
         breaks = () if np.isinf(self.rupture) else (BranchLimit(True, self.rupture, 0.0, BROKEN),)
-        empty = 1.0 - self.ratio
+        empty, slack = 1.0 - self.ratio, -(e0 or BARELY)
         if branch == ELASTIC:
-            slackens = (BranchLimit(False, -e0, empty, SLACK),) if self.pulls_only else ()
+            slackens = (BranchLimit(False, slack, empty, SLACK),) if self.pulls_only else ()
             return (
                 BranchLimit(True, reach - e0, 1.0, UP),
                 BranchLimit(False, -reach - e0, 1.0, DOWN),
@@ -303,7 +305,7 @@ class YieldingElement(ElementDefaults):
                 *breaks,
             )
         if branch == SLACK:
-            return (BranchLimit(True, -e0, empty, ELASTIC), *breaks)
+            return (BranchLimit(True, slack, empty, ELASTIC), *breaks)
         if branch == DOWN and self.pulls_only and self.ratio > 0.0:
             return (BranchLimit(False, empty / self.ratio * reach - e0, 0.0, SLACK),)
         return breaks if branch == UP else ()

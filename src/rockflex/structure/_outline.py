@@ -149,7 +149,8 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     heights, shapes = _heights_and_shapes(p, modes)
     left, right = -p.pivot(-1).arm, p.pivot(1).arm
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
-    strokes = (*_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
+    behind = [_stroke(left if side > 0 else right, [0.0, top], 8.0, GROUND) for side in p.sides if len(p.sides) == 1]
+    strokes = (*behind, *_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
     held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
     return StructureOutline(kind, heights, shapes, left, right, strokes, held, _concentrated_masses(kind, p, structure))

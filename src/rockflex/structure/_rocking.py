@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated, ClassVar, SupportsIndex
+from typing import Annotated, ClassVar, Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +33,7 @@ from rockflex.structure._rocking_checks import (
     checked_eccentricity,
     checked_floor_modes,
     checked_modal_values,
+    checked_restitution,
     checked_stories,
     checked_top_height,
     checked_translational_inertia,
@@ -202,6 +203,26 @@ class RockingProperties(HtmlTable, Value):
         tuple[YieldingStory, ...],
         Described("stories that yield", in_file=False, note="They need the `floors`; see `YieldingStories`."),
     ]
+    restitution: Annotated[
+        float | None,
+        Described(
+            "the share of the rotation's velocity that an impact leaves, of a body without modes",
+            rule="zero or positive",
+            note="At most 1; of what opens to one side, that with which it turns back. Default: that of the impact law "
+            "of the model.",
+            low=0.0,
+            high=1.0,
+        ),
+    ]
+    opens: Annotated[
+        Literal["both", "right", "left"],
+        Described(
+            "the side to which the base can rotate",
+            in_file=False,
+            note='Both, or one: "right" is about the right edge, where θ > 0, and a wall behind holds the other side. '
+            "See `OneSided`.",
+        ),
+    ]
 
     def __init__(
         self,
@@ -222,6 +243,8 @@ class RockingProperties(HtmlTable, Value):
         eccentricity: float = 0.0,
         leaning_mass: float = 0.0,
         stories: Iterable[YieldingStory] = (),
+        restitution: float | None = None,
+        opens: Literal["both", "right", "left"] = "both",
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = {"i_theta": i_theta, "l0r": l0r, "m_tot": m_tot, "half_width": half_width}
@@ -241,6 +264,8 @@ class RockingProperties(HtmlTable, Value):
             eccentricity=e,
             leaning_mass=leaning_mass,
             stories=checked_stories(stories, floors, modes["omega"].size),
+            restitution=checked_restitution(restitution, opens, modes["omega"].size),
+            opens=opens,
         )
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":
@@ -298,10 +323,18 @@ class RockingProperties(HtmlTable, Value):
         """The distinct pivots: one for a `symmetric` structure, otherwise the right and the left one."""
         return (self.pivot(1),) if self.symmetric else (self.pivot(1), self.pivot(-1))
 
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """The sides to which the base can rotate: 1 is right, -1 left; both unless it `opens` to one."""
+        return {"right": (1,), "left": (-1,)}.get(self.opens, (1, -1))
+
     @cached_property
     def weaker_pivot(self) -> Pivot:
-        """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal."""
-        return min(self.pivots, key=lambda pivot: pivot.resisting_moment)
+        """The pivot with the smaller resisting moment, about which the base lifts first; the right one if equal.
+
+        Of what opens to one side it is the only one about which it rotates.
+        """
+        return min(map(self.pivot, self.sides), key=lambda pivot: pivot.resisting_moment)
 
     @cached_property
     def symmetric(self) -> bool:
@@ -359,12 +392,12 @@ class RockingProperties(HtmlTable, Value):
     @property
     def self_centring(self) -> bool:
         """Whether the base closes against its dissipators about both pivots; see `Pivot.self_centring`."""
-        return all(pivot.self_centring for pivot in self.pivots)
+        return all(pivot.self_centring for pivot in map(self.pivot, self.sides))
 
     @property
     def recentring_ratio(self) -> float:
         """λ of weight and prestress over dissipators, the smaller of both pivots; see `Pivot.recentring_ratio`."""
-        return min(pivot.recentring_ratio for pivot in self.pivots)
+        return min(pivot.recentring_ratio for pivot in map(self.pivot, self.sides))
 
     def recentring_ratio_at(self, rotation: float) -> float:
         """Return λ at a design rotation |θ| in rad, the smaller of both pivots; infinite where no dissipator acts.
@@ -391,7 +424,7 @@ class RockingProperties(HtmlTable, Value):
         """
         turn = checked_positive("rotation", checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
         found: list[float] = []
-        for pivot in self.pivots:
+        for pivot in map(self.pivot, self.sides):
             arms = [(each, each.arm(pivot.arm, pivot.side)) for each in self.elements if not each.attached]
             moments = [(each.recentres, each.slow_force(r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
@@ -405,7 +438,7 @@ class RockingProperties(HtmlTable, Value):
 
         For an eccentric base it is the smaller of the two, with the distance of the nearer pivot in place of B.
         """
-        return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
+        return min(pivot.nominal_overturning_rotation for pivot in map(self.pivot, self.sides))
 
     @explaining_overflow("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":

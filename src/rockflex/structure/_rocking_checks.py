@@ -10,6 +10,7 @@ from rockflex.foundation.checks import (
     check_all_positive,
     checked_finite_vector,
     checked_instance,
+    is_one_of,
 )
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.overflow import explaining_overflow
@@ -140,6 +141,24 @@ def checked_stories(
                 field="stories",
             )
     return stories
+
+
+def checked_restitution(given: float | None, opens: str, n_modes: int) -> float | None:
+    if not is_one_of(opens, ("both", "right", "left")):
+        raise InputError(f'opens must be "both", "right" or "left", but {shown(opens)} was given.', field="opens")
+    if given is not None and given > 1.0:
+        raise InputError(
+            f"restitution must be at most 1, but {given:g} was given. It is the ratio of the rotation's velocities "
+            "after and before an impact; more than 1 would gain energy.",
+            field="restitution",
+        )
+    if given is not None and n_modes and opens == "both":
+        raise InputError(
+            f"restitution is that of a rigid body, or of what opens to one side, but the structure has {n_modes} modes "
+            "and opens to both. Give an impact law to the run: impact=Restitution(e).",
+            field="restitution",
+        )
+    return given
 
 
 def checked_top_height(floors: FloorModes | None, given: float | None) -> float | None:

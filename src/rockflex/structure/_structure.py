@@ -95,10 +95,10 @@ class ModifiedStructure(DrawnStructure):
         """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
         base = self.structure.rocking(n_modes)
         if n_modes is not None:
-            return replace(base, **self._changes())
+            return replace(base, **self._changes(base))
         known = vars(self).get("_known")
         if known is None or known[0] is not base:  # the same object each time, so that runs can share prepared matrices
-            known = vars(self)["_known"] = base, replace(base, **self._changes())
+            known = vars(self)["_known"] = base, replace(base, **self._changes(base))
         return known[1]
 
     def check(self) -> None:
@@ -108,8 +108,8 @@ class ModifiedStructure(DrawnStructure):
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_known"}
 
-    def _changes(self) -> dict[str, Any]:
-        """Return the properties that differ."""
+    def _changes(self, base: RockingProperties) -> dict[str, Any]:
+        """Return the properties that differ from those of the structure."""
         raise NotImplementedError
 
 
@@ -232,7 +232,8 @@ class Eccentric(ModifiedStructure):
         vars(self).update(structure=checked_structure(structure), eccentricity=e)
         self.check()  # whether the axis and the tendons are within the base
 
-    def _changes(self) -> dict[str, Any]:
+    def _changes(self, base: RockingProperties) -> dict[str, Any]:
+        del base
         return {"eccentricity": self.eccentricity}
 
 
@@ -285,7 +286,8 @@ class Restrained(ModifiedStructure):
         """The tendons among the elements."""
         return tendons_among(self.elements)
 
-    def _changes(self) -> dict[str, Any]:
+    def _changes(self, base: RockingProperties) -> dict[str, Any]:
+        del base
         return {"elements": self.elements}
 
 

@@ -1,4 +1,4 @@
-"""Towers, columns and blocks: a tapered tower, a cantilever with a mass at its tip, a rigid block."""
+"""Towers and columns: a tapered tower, and a cantilever with a mass at its tip."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_mode_count, is_one_of, real_or_nan
+from rockflex.foundation.checks import checked_mode_count, is_one_of
 from rockflex.foundation.constants import MOST_MODES
 from rockflex.foundation.descriptions import Described, described
 from rockflex.foundation.errors import InputError
@@ -23,7 +23,6 @@ from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._from_matrices import from_matrices
 from rockflex.structure._outline import Kind, Masses
-from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _TOWER_ELEMENTS = 2000  # as in the paper
@@ -283,100 +282,3 @@ class CantileverWithTipMass(AssembledStructure, Value):
                 column=column,
             ),
         )
-
-
-@described(title="Rigid block")
-@explaining_overflow("The inertia of a block with these sizes and this mass")
-def rigid_block(
-    slenderness: Annotated[
-        float | None,
-        Described(
-            "atan(b/h) of the half sides (or give width and height)",
-            "rad",
-            note="α, above 0 and below π/2.",
-            low=1e-4,
-            high=1.5,
-        ),
-    ] = None,
-    half_diagonal: Annotated[
-        float | None,
-        Described(
-            "the distance from the corner to the centre (or give width and height)",
-            "m",
-            rule="positive",
-            note="R.",
-            low=1e-3,
-            high=1000.0,
-        ),
-    ] = None,
-    mass: Annotated[float, Described("the mass, which rotations do not depend on", "kg", rule="positive")] = 1.0,
-    *,
-    width: Annotated[
-        float | None,
-        Described("the width 2 b in the plane of rocking", "m", rule="positive", low=1e-3, high=1000.0),
-    ] = None,
-    height: Annotated[float | None, Described("the height 2 h", "m", rule="positive", low=1e-3, high=1000.0)] = None,
-) -> RockingProperties:
-    """Return the properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
-
-    I_θ = 4/3 m R², B = R sin α, L_0^r = m R cos α; the frequency parameter is p² = 3 g/(4 R). Housner's coefficient
-    1 - 2 m B²/I_θ is 1 - 1.5 sin² α (Housner 1963, Bull. Seism. Soc. Am. 53(2), 403-417). The block is given by its
-    `width` and `height`, or by `slenderness` and `half_diagonal`.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or the sizes are not given by one of the pairs.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> cabinet = rf.rigid_block(width=0.6, height=2.0, mass=250.0)
-    >>> round(cabinet.half_width, 3), round(cabinet.uplift_acceleration, 3)
-    (0.3, 2.943)
-    >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
-    >>> round(block.half_width, 3), round(block.resisting_moment, 3)
-    (0.742, 7.281)
-    """
-    sides = {"width": width, "height": height}
-    polar = {"slenderness": slenderness, "half_diagonal": half_diagonal}
-    given = [name for name, value in (sides | polar).items() if value is not None]
-    if given not in ([*sides], [*polar]):
-        raise InputError(
-            f"A block is given by width and height in m, or by slenderness in rad and half_diagonal in m, but "
-            f"{' and '.join(given) or 'neither'} {'were' if len(given) > 1 else 'was'} given. Write "
-            "rigid_block(width=0.6, height=2.0, mass=250.0), for instance.",
-            field=given[-1] if given else "width",
-        )
-    if width is not None and height is not None:
-        b, h = 0.5 * width, 0.5 * height
-        r, moment = math.hypot(b, h), mass * h
-    else:
-        alpha = real_or_nan(slenderness)
-        if not 0.0 < alpha < 0.5 * math.pi:
-            hint = f" An aspect ratio h/b of {alpha:g} is {math.atan(1.0 / alpha):.4g} rad." if alpha > 1.0 else ""
-            raise InputError(
-                f"slenderness must be above 0 and below π/2 = 1.5708 rad, but {shown(slenderness)} was given. It is "
-                f"atan(b/h) of the half sides.{hint}",
-                field="slenderness",
-            )
-        r = half_diagonal or 0.0
-        b, h, moment = r * math.sin(alpha), r * math.cos(alpha), mass * r * math.cos(alpha)
-    return _body_without_modes(4.0 / 3.0 * mass * r**2, moment, mass, b, 2.0 * h)
-
-
-def _body_without_modes(i_theta: float, l0r: float, mass: float, half_width: float, top: float) -> RockingProperties:
-    """Return a rigid body with its top at some height."""
-    return RockingProperties(
-        omega=(),
-        effective_mass=(),
-        effective_height=(),
-        top_ordinate=(),
-        i_theta=i_theta,
-        l0r=l0r,
-        m_tot=mass,
-        half_width=half_width,
-        zeta=(),
-        top_height=top,
-        base_mass=0.0,
-    )

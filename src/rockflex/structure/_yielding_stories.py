@@ -16,6 +16,7 @@ from rockflex.foundation.values import Value
 from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._frames import LumpedStructure
 from rockflex.structure._leaning import Leaning, lumped_structure_of
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import ModifiedStructure, Structure
 
 COUPLED = 1e-9  # relative: stiffness between drifts that is attributed to rounding
@@ -117,7 +118,8 @@ class YieldingStories(ModifiedStructure, Value):
     def __getstate__(self) -> dict[str, object]:
         return {name: getattr(self, name) for name in ("structure", "strengths", "post_yield_ratio")}
 
-    def _changes(self) -> dict[str, Any]:
+    def _changes(self, base: RockingProperties) -> dict[str, Any]:
+        del base
         values = zip(self.stiffness.tolist(), self.strengths.tolist(), self.post_yield_ratio.tolist(), strict=True)
         return {"stories": tuple(YieldingStory(k, *each) for k, each in enumerate(values, 1) if np.isfinite(each[1]))}
 

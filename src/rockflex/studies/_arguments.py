@@ -382,7 +382,7 @@ class InitialState(Value):
         Raises
         ------
         InputError
-            If there are more values than modes, or a fixed base would rotate.
+            If there are more values than modes, or a base would rotate that is fixed, or to a side where it cannot.
         """
         n = model.properties.n_modes
         state = np.zeros(2 * n + 2)
@@ -400,6 +400,14 @@ class InitialState(Value):
                 )
             state[first : first + values.size] = values
         state[-2:] = self.rotation, self.rotation_velocity
+        side = float(np.sign(self.rotation or self.rotation_velocity))
+        if side not in (0.0, *model.properties.sides):
+            raise InputError(
+                f"The structure opens to the {model.properties.opens} alone, but rotation={shown(self.rotation)} and "
+                f"rotation_velocity={shown(self.rotation_velocity)} were given. Give "
+                f"{'positive' if side < 0.0 else 'negative'} ones.",
+                field="initial",
+            )
         if not model.lifts and np.any(state[-2:] != 0.0):
             raise InputError(
                 f"{model.label} has a base that cannot lift, but rotation={shown(self.rotation)} and "

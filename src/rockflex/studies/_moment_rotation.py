@@ -81,8 +81,8 @@ def moment_rotation(
     Raises
     ------
     InputError
-        If there are no rotations, one is not finite or beyond π/2, the ground has no springs, or the structure cannot
-        stand on them.
+        If there are no rotations, one is not finite, beyond π/2 or to a side to which the structure does not open, the
+        ground has no springs, or the structure cannot stand on them.
 
     References
     ----------
@@ -130,6 +130,13 @@ def moment_rotation(
             field="rotations",
         )
     properties = _held_at_base(rocking_properties_of(structure))
+    closed = np.flatnonzero(~np.isin(np.sign(path), (0, *properties.sides)))
+    if closed.size:
+        raise InputError(
+            f"rotations[{closed[0]}] = {path[closed[0]]:g} rad was given, but the structure opens to the "
+            f"{properties.opens} alone. Give rotations to that side.",
+            field="rotations",
+        )
     check_run_options(None, None, ground)
     under = ground_under_structure(properties, ground)
     if under is None:

@@ -81,6 +81,7 @@ def pushover(
             f"{shown(pattern)} was given.",
             field="pattern",
         )
-    model = Model(lifts=checked_instance("lifts", lifts, bool)).of(properties)
+    held = 1 not in properties.sides  # by a wall behind it
+    model = Model(lifts=checked_instance("lifts", lifts, bool) and not held).of(properties)
     assert isinstance(model, RockingModel)
     return pushover_path(model, np.asarray(forces / forces.sum()), target, floors)

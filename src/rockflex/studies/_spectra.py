@@ -18,8 +18,8 @@ from rockflex.models._impact import ImpactLaw
 from rockflex.models._label import Model, parse_model
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._response import Response, complete_model_label
+from rockflex.structure._rigid_bodies import rigid_block
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._towers import rigid_block
 from rockflex.studies._arguments import (
     GroundChoice,
     RockingStructure,

@@ -57,7 +57,7 @@ PRESETS: list[dict[str, Any]] = [
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""
 
 
-OF_WHOLE = ("eccentricity", "leaning_masses", "stories")  # fields of every kind of structure
+OF_WHOLE = ("eccentricity", "one_sided", "leaning_masses", "stories")  # fields of every kind of structure
 FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
@@ -118,7 +118,7 @@ def _form_field_sentence(description: str, unit: str) -> str:
 def _form_field_type(annotation: Any) -> str:
     """The simplest form that accepts every kind of value of a field."""
     kinds = members_of_annotation(annotation)
-    if any(get_origin(kind) is Literal for kind in kinds):
+    if any(get_origin(kind) is Literal for kind in kinds) and float not in kinds:  # a number, or what else files have
         return "choice"
     if bool in kinds:
         return "flag"

@@ -241,16 +241,19 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
     lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
     made = ", ".join(_python_call(type(each).__name__, element_parameters(each)) for each in elements)
-    e = entry.eccentricity
-    based = ({"eccentricity": _python_literal(e)} if e else {}) | ({"elements": f"[{made}]"} if made else {})
     if entry.leaning_masses is not None:
         lines.append(f"structure = rf.Leaning(structure, {_python_literal(entry.leaning_masses)})")
     if entry.stories is not None:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
-    wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
-    return [*lines, *(f"structure = rf.{wraps[name]}(structure, {code})" for name, code in based.items())]
+    if entry.eccentricity:
+        lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
+    if entry.one_sided is not None:
+        lines.append(f"structure = rf.OneSided(structure, {_python_named_arguments(entry.one_sided.model_dump())})")
+    if made:
+        lines.append(f"structure = rf.Restrained(structure, [{made}])")
+    return lines
 
 
 def _motion_code_lines(state: PageState, upload_name: str) -> list[str]:

@@ -213,6 +213,11 @@ def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:
     base = [
         _fact("B", p.half_width, "m", "half the width of the base"),
         *([moved] if p.eccentricity else []),
+        *(
+            []
+            if p.restitution is None
+            else [_fact("η", p.restitution, "", "velocity after an impact over that before")]
+        ),
         _fact("m_tot", p.m_tot, "kg", "total mass with the base"),
         *([leaning | {"share": round(100 * p.weight_share)}] if p.leaning_mass else []),
     ]

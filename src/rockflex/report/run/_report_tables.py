@@ -189,6 +189,11 @@ def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]
         ),
     ]
     shift = [value_fact(translated("Eccentricity e"), p.eccentricity, length, "eccentricity")] if p.eccentricity else []
+    lands: list[ReportFact] = []
+    if p.opens != "both":
+        lands.append(ReportFact(translated("Opens to one side"), ReportCell(translated(p.opens))))
+    if p.restitution is not None:
+        lands.append(value_fact(translated("Restitution"), p.restitution, ratio, "restitution", 4))
     held = (
         [value_fact(translated("Prestress of the tendons"), p.prestress, units.of("force"), "prestress")]
         if p.tendons
@@ -202,6 +207,7 @@ def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]
         *top,
         value_fact(translated("Half width of the base B"), p.half_width, length, "half_width"),
         *shift,
+        *lands,
         value_fact(translated("Slenderness {ratio}", ratio=slope), height / p.half_width, ratio, "slenderness"),
         *_rotation_limit_facts(p, units.of("rotation")),
         value_fact(translated("Inertia about a pivot I_θ"), pivot.i_theta, units.of("inertia"), "i_theta", 4),

@@ -11,7 +11,7 @@ from rockflex.structure.file._object_tables import CLASS, arguments_in_table
 from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_tables import PROFILES
 
-_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "YieldingStories")
+_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "OneSided", "YieldingStories")
 
 
 def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
@@ -43,12 +43,17 @@ def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
         inner["elements"] = elements
     if eccentricity := rest.pop("eccentricity", 0.0):
         inner["eccentricity"] = eccentricity
+    if (side := rest.pop("opens", "both")) != "both":
+        inner["one_sided"] = {"restitution": rest.pop("restitution", 0.0), "side": side}
     if name == "Leaning":
         inner["leaning_masses"] = rest["masses"]
     elif name == "YieldingStories":
         inner["stories"] = rest
-    elif name == "RockingProperties" and not rest["omega"]:
-        inner["block"] = _block_of_properties(rest)
+    elif name == "OneSided":
+        inner["one_sided"] = rest
+    elif name == "RockingProperties" and _is_block(rest):
+        inner["block"] = {"width": 2.0 * rest["half_width"], "height": 2.0 * rest["l0r"] / rest["m_tot"]}
+        inner["block"]["mass"] = rest["m_tot"]
     elif name not in _WRAPPERS:
         if "bending_stiffness" in rest:
             rest.pop("section", None)  # which gave stiffness and mass
@@ -66,8 +71,8 @@ def _kind_made(tables: Mapping[str, Any], table: dict[str, Any]) -> str:
     return {getattr(each.makes, "__name__", ""): kind for kind, each in tables.items()}[table[CLASS]]
 
 
-def _block_of_properties(given: dict[str, Any]) -> dict[str, float]:
-    half, height, mass = given["half_width"], given["l0r"] / given["m_tot"], given["m_tot"]
-    if not math.isclose(given["i_theta"], 4.0 / 3.0 * mass * (half**2 + height**2), rel_tol=1e-9):
-        raise ValueError("a body without modes that is no homogeneous block")
-    return {"width": 2.0 * half, "height": 2.0 * height, "mass": mass}
+def _is_block(given: dict[str, Any]) -> bool:
+    """Tell whether properties are those of a homogeneous block that lands as one."""
+    squares = given["half_width"] ** 2 + (given["l0r"] / given["m_tot"]) ** 2
+    alike = math.isclose(given["i_theta"], 4.0 / 3.0 * given["m_tot"] * squares, rel_tol=1e-9)
+    return not given["omega"] and alike and given.get("restitution") is None

@@ -15,6 +15,7 @@ from rockflex.structure._attachment import PLACE
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._leaning import Leaning
+from rockflex.structure._one_sided import OneSided
 from rockflex.structure._outline import has_shapes
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, Restrained, Structure
@@ -26,8 +27,10 @@ from rockflex.structure.file._toml_table import TomlTable, table_of
 _TABLE_KEY = Described("a table", form=PLAIN)
 if TYPE_CHECKING:
     StoriesTable = TomlTable
+    OneSidedTable = TomlTable
 else:
     StoriesTable = table_of(YieldingStories, TomlTable, __name__)
+    OneSidedTable = table_of(OneSided, TomlTable, __name__)
 
 
 KINDS: dict[str, type[StructureTable]] = STRUCTURES | {
@@ -65,6 +68,8 @@ class StructureEntry(_OfKinds):
         None if no story yields.
     eccentricity : float or None
         In m; None in the middle of the base.
+    one_sided : OneSidedTable or None
+        None if it opens to both sides.
     elements : list of tables, one of each element
         None if there are none.
     """
@@ -80,6 +85,10 @@ class StructureEntry(_OfKinds):
         Described("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
     ] = None
     eccentricity: Eccentricity = None
+    one_sided: Annotated[
+        OneSidedTable | None,
+        Described("a table", label="One-sided", form=PLAIN, page="the wall behind it, so that it opens to one side"),
+    ] = None
     elements: Annotated[
         list[AnyElementTable] | None, Described("a list of tables, each under a heading [[elements]]", form=PLAIN)
     ] = None  # not an empty list, which would be new in the documents of stored studies
@@ -138,6 +147,8 @@ class StructureEntry(_OfKinds):
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
+        if (one_sided := self.one_sided) is not None:
+            built = _wrapped("one_sided", lambda: OneSided(built, **one_sided.model_dump()))
         return self.hold(built)
 
     def hold(self, built: Built) -> Built:
@@ -195,6 +206,7 @@ class StructureEntry(_OfKinds):
         more: dict[str, Any] = {} if self.leaning_masses is None else {"leaning_masses": self.leaning_masses}
         more |= {"stories": self.stories.model_dump()} if self.stories else {}
         more |= {"eccentricity": self.eccentricity} if self.eccentricity else {}
+        more |= {"one_sided": self.one_sided.model_dump()} if self.one_sided else {}
         more |= {"elements": [each.describe() for each in self.elements]} if self.elements else {}
         return {**self.table.values(), **more}
 
@@ -213,6 +225,6 @@ def _wrapped(key: str, make: Callable[[], Built]) -> Built:
     try:
         return make()
     except InputError as error:
-        place = f"[{key}]" if key == "stories" else key
+        place = f"[{key}]" if key in ("stories", "one_sided") else key
         inner = key if error.field in ("", "masses", "structure") or key == "leaning_masses" else f"{key}.{error.field}"
         raise InputError(str(error), place=place, field=inner) from error

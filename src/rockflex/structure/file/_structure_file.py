@@ -22,16 +22,17 @@ def read_structure(path: str | Path) -> Built:
     (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
     (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
-    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[elements]]`` restrain it; their key ``kind`` is
-    "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`),
-    "friction_damper" (`FrictionDamper`), "strand_tendon" (`strand_tendon`), "bar_fuse" (`bar_fuse`), "u_plate_fuse"
-    (`u_plate_fuse`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`), "multilinear_bar" (`MultilinearBar`),
-    or the name that another package registers (`ElementLaw`). In place of a ``position`` an element takes ``between``
-    (two floors) or the ``height`` of a tie, with a ``cosine`` (`Attachment`). ``leaning_masses`` above all tables is
-    mass on other columns (`Leaning`), a table ``[stories]`` with ``strengths`` and ``post_yield_ratio`` makes stories
-    yield (`YieldingStories`), and a number ``eccentricity`` moves the structure from the middle of its base
-    (`Eccentric`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file. A file of a
-    `Project` has the key ``class`` above all tables, the name of the class, and its arguments.
+    (`RockingProperties`), ``[block]`` (`rigid_block`) or ``[rocking_frame]`` (`rocking_frame`). Tables ``[[elements]]``
+    restrain it; their key ``kind`` is "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`),
+    "viscous_damper" (`ViscousDamper`), "friction_damper" (`FrictionDamper`), "strand_tendon" (`strand_tendon`),
+    "bar_fuse" (`bar_fuse`), "u_plate_fuse" (`u_plate_fuse`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`),
+    "multilinear_bar" (`MultilinearBar`), or the name that another package registers (`ElementLaw`). In place of a
+    ``position`` an element takes ``between`` (two floors) or the ``height`` of a tie, with a ``cosine`` (`Attachment`).
+    ``leaning_masses`` above all tables is mass on other columns (`Leaning`), a table ``[stories]`` with ``strengths``
+    and ``post_yield_ratio`` makes stories yield (`YieldingStories`), and a number ``eccentricity`` moves the structure
+    from the middle of its base (`Eccentric`). A table ``[one_sided]`` with ``restitution`` and ``side`` puts a wall
+    behind it (`OneSided`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file. A
+    file of a `Project` has the key ``class`` above all tables, the name of the class, and its arguments.
 
     Parameters
     ----------

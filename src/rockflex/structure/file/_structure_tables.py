@@ -13,9 +13,10 @@ from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
+from rockflex.structure._rigid_bodies import rigid_block, rocking_frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Structure
-from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
+from rockflex.structure._towers import CantileverWithTipMass, TaperedTower
 from rockflex.structure._wall_frame import WallFrame
 from rockflex.structure.file._section_tables import SectionTable, section_argument
 from rockflex.structure.file._toml_table import TomlTable, table_of
@@ -90,6 +91,7 @@ FishBoneTable = table_of(FishBone, StructureTable, __name__)
 
 
 RigidBlockTable = table_of(rigid_block, StructureTable, __name__)
+RockingFrameTable = table_of(rocking_frame, StructureTable, __name__)
 
 
 class LumpedMassesTable(TomlTable):
@@ -247,5 +249,6 @@ STRUCTURES: dict[str, type[StructureTable]] = {
     "modes": ModesTable,
     "properties": RockingPropertiesTable,
     "block": RigidBlockTable,
+    "rocking_frame": RockingFrameTable,
 }
 """The table of each kind of structure of this package by its name in a file."""

@@ -1,7 +1,7 @@
 // Alternatives that are kept: their list, how their demands differ under one record or a set, and their motion beside that of
 // the present structure.
 
-import { yields } from "./choices.js";
+import { isRigid, yields } from "./choices.js";
 import { clone, decode, h, latest, number, scrolled, symbol, tableOf } from "./dom.js";
 import { kindOf } from "./drawn.js";
 import { select, trouble } from "./form.js";
@@ -113,7 +113,7 @@ export function alternatives(app, show, own = false) {
     const next = clone(app.state);
     for (const name of OWN) delete next[name];
     Object.assign(next, parts(app.state.alternatives[i]));
-    const fits = (label) => (label === "rigid") === "block" in next.structure && (next.bouc_wen || !yields(label));
+    const fits = (label) => (label === "rigid") === isRigid(next.structure) && (next.bouc_wen || !yields(label));
     if (!next.cloud.models.every(fits)) next.cloud.models = [next.models[0]];
     if (!fits(next.design.model)) [next.design.model] = next.models;
     app.restore(next);

@@ -21,6 +21,10 @@ const YIELDING = [
   ["1DOF-fixed-BW", t("first mode, which yields; base held down")],
 ];
 
+const RIGID = ["block", "rocking_frame"]; // kinds of structures without modes
+
+export const isRigid = (structure) => RIGID.some((kind) => kind in structure);
+
 // The label of a model with its words, where it has some.
 export function explained(label) {
   const found = [...MODELS, ...YIELDING].find(([known]) => known === label);

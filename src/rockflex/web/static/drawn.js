@@ -9,7 +9,7 @@ import { t } from "./texts.js";
 import { eachNumber, inUnit, outputInUnit } from "./units.js";
 
 const CURVES = ["t", "rotation", "points", "uplifted", "slip", "heave", "left_edge", "right_edge"];
-const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height" };
+const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height", rocking_frame: "column_height" };
 const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", "stiffness", "column_stiffness", "beam_stiffness"];
 const LEAD = 3; // s before the largest rotation at which the drawing begins to move
 const FAR_FIELD = "fema-p695-far-field";

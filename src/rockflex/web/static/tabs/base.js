@@ -1,6 +1,6 @@
 // The base of a structure: the elements between it and the ground, and the ground itself.
 
-import { grounded, yields } from "../choices.js";
+import { grounded, isRigid, yields } from "../choices.js";
 import { clone, h } from "../dom.js";
 import { nameOf } from "../drawing.js";
 import { folded, select, tableField, trouble } from "../form.js";
@@ -227,7 +227,7 @@ function kindOf(given) {
 
 // The models of a state that can stand on springs or slide, or others in their place.
 export function without(state) {
-  const usual = "block" in state.structure ? ["rigid"] : ["MDOF-S", "2DOF-S"];
+  const usual = isRigid(state.structure) ? ["rigid"] : ["MDOF-S", "2DOF-S"];
   const left = (labels) => {
     const found = labels.filter(grounded);
     return found.length ? found : [...usual];

@@ -2,6 +2,7 @@
 
 import { alternatives } from "../alternatives.js";
 import { attempt, send } from "../api.js";
+import { isRigid } from "../choices.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
@@ -34,13 +35,14 @@ const DEFAULTS = {
     i_theta: 20066620, l0r: 1800000, m_tot: 240000, half_width: 1.054, zeta: 0.02,
   },
   block: { width: 0.6, height: 2, mass: 250 },
+  rocking_frame: { n_columns: 4, column_width: 1.6, column_height: 9.6, column_mass: 6e4, cap_mass: 2.4e5 },
 };
 
 // Tables nested in that of a structure, by name.
 const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
 };
-const FLOORLESS = ["properties", "block"]; // kinds whose floors are not known: no mass leans on them, and no story yields
+const FLOORLESS = ["properties", "block", "rocking_frame"]; // kinds whose floors are not known: no mass leans on them, and no story yields
 const YIELD = 0.3; // share of the weight that new stories bear before they yield
 
 export default function structureTab(app) {
@@ -55,8 +57,8 @@ export default function structureTab(app) {
       drawn = false;
       cuts++;
     }
-    const rigid = "block" in structure;
-    app.change({ structure, ...(rigid === "block" in app.state.structure ? {} : modelsFor(rigid)) });
+    const rigid = isRigid(structure);
+    app.change({ structure, ...(rigid === isRigid(app.state.structure) ? {} : modelsFor(rigid)) });
   }
 
   function modelsFor(rigid) {
@@ -115,7 +117,7 @@ export default function structureTab(app) {
     const given = (spec) => !(values.section && SET_BY_SECTION.includes(spec.name) && values[spec.name] === undefined);
     const focused = fields.contains(document.activeElement) && document.activeElement.closest("[data-path]").dataset.path;
     const specs = kinds[now].fields.filter(given);
-    const own = whole.filter((spec) => spec.name === "eccentricity" || !FLOORLESS.includes(now));
+    const own = whole.filter((spec) => ["eccentricity", "one_sided"].includes(spec.name) || !FLOORLESS.includes(now));
     const wanted = (spec, table) => spec.required || table[spec.name] !== undefined || ["section", ...SET_BY_SECTION].includes(spec.name);
     const left = [...specs.filter((spec) => !wanted(spec, values)).map((spec) => entry(now, spec, values)),
       ...own.filter((spec) => !wanted(spec, structure)).map(ofWhole)];
@@ -133,7 +135,8 @@ export default function structureTab(app) {
       put(next);
     };
     const [path, value] = [`structure.${spec.name}`, app.state.structure[spec.name]];
-    const start = () => ({ strengths: Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2)), post_yield_ratio: 0.05 });
+    const strength = () => Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2));
+    const start = () => (spec.name === "stories" ? { strengths: strength(), post_yield_ratio: 0.05 } : {});
     return spec.type === "table" ? tableGroup(path, spec, value, start, change) : tableField(path, spec, value, change);
   }
 
