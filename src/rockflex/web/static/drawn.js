@@ -46,9 +46,10 @@ export function measures(structure, view, kinds, of = structure) {
   const direct = ["half_width", "base_radius"].find((name) => name in seen);
   const [high, stiff] = [HEIGHTS[kind], STIFFNESSES.filter((name) => name in seen)];
   const tall = H * grown(high);
-  const half = direct ? values[direct] : (B * grown(high)) / grown("aspect_ratio");
-  const aspect = (h, b) => ("aspect_ratio" in seen ? scaled(["aspect_ratio"], (h / H) * (B / b)) : {});
-  if (kind !== "properties") found.B = { value: half, fields: [direct ?? "aspect_ratio"], set: (v) => into(direct ? { [direct]: v } : aspect(tall, v)) };
+  const wide = direct ?? ["column_width"].find((name) => name in seen) ?? "aspect_ratio";
+  const half = direct ? values[direct] : wide === "aspect_ratio" ? (B * grown(high)) / grown(wide) : B * grown(wide);
+  const aspect = (h, b) => (wide === "aspect_ratio" ? scaled([wide], (h / H) * (B / b)) : scaled([wide], b / B));
+  if (kind !== "properties") found.B = { value: half, fields: [wide], set: (v) => into(direct ? { [direct]: v } : aspect(tall, v)) };
   if (high && !values.z && !values.lumped_masses)
     found.H = { value: tall, fields: [high], set: (v) => into({ ...scaled([high], v / H), ...(direct ? {} : aspect(v, half)) }) };
   if (seen.period !== undefined) found.T = { value: T * grown("period"), fields: ["period"], set: (v) => into({ period: times(seen.period, v / T) }) }; // masses that lean make T longer than the field
