@@ -232,6 +232,7 @@ def structures() -> Calls:
         ),
         "BoucWen": (rf.BoucWen, BOUC_WEN),
         "Restitution": (rf.Restitution, {"e": 0.9, "shortest_excursion": 1e-4}),
+        "AngularMomentum": (rf.AngularMomentum, {"restitution": 0.9}),
         "Model": (rf.Model, {"n_modes": 1, "lifts": True, "complete": False, "closure": None, "yields": False}),
         "InitialState": (
             rf.InitialState,
