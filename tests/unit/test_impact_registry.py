@@ -11,7 +11,7 @@ from rockflex.cli._app import app
 from rockflex.foundation import schema
 from rockflex.models._impact import LAW_CLASSES, LAWS, law_of_name
 from rockflex.models._landing import rule_of_law
-from rockflex.studies.spec import RunOptionKeys, impact_law_name
+from rockflex.studies._case_keys import RunOptionKeys, impact_law_name
 from rockflex.web._forms import forms_of_structures
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=6.0)

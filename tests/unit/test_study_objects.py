@@ -10,7 +10,7 @@ import pytest
 import rockflex as rf
 from own_study import FRAME, OwnBar, Tower, own_ground, random_frame, roof
 from rockflex.studies._study_kind import KINDS
-from rockflex.studies.design._design_study import stored_design_search
+from rockflex.studies.design._design_study import DesignQuestion
 
 SUITE = rf.load_suite("fema-p695-far-field")[:3]
 YIELDS = rf.YieldingStories(rf.Leaning(rf.Frame(**FRAME), 20e3), strengths=[300e3, 250e3, 140e3], post_yield_ratio=0.05)
@@ -71,7 +71,8 @@ def test_a_function_of_designs_resumes_its_folder(searched, tmp_path):
         mixed = [wanted[0], rf.Requirement(0.01, 0.01, hazard=hazard)]
         with pytest.raises(rf.InputError, match="requirements: a folder stores those of one measure"):
             found(requirements=mixed, folder=tmp_path / "other")
-        assert stored_design_search(kept.spec) == (wanted, rf.DesignCost(1.0, 1e-6))
+        question = DesignQuestion.of_document(kept.spec)
+        assert (question.requirements, question.cost) == (wanted, rf.DesignCost(1.0, 1e-6))
         rate = [rf.Requirement(0.01, 0.01, hazard=hazard)]
         pd.testing.assert_frame_equal(found(requirements=rate, folder=tmp_path / "rate"), found(requirements=rate))
     else:
