@@ -206,8 +206,14 @@ class LinearPhase:
 
 def _memory_of(*parts: object) -> int:
     """The memory of dataclasses with arrays, in bytes."""
-    given = [each for part in parts if part is not None for each in vars(part).values()]
-    return OBJECT * len(parts) + sum(each.nbytes for each in given if isinstance(each, np.ndarray))
+    found = 0
+    for part in parts:
+        if part is not None:
+            found += OBJECT
+            for each in vars(part).values():
+                if type(each) is np.ndarray:
+                    found += each.nbytes
+    return found
 
 
 OBJECT = 400  # bytes of an event without the numbers in its arrays, or of what follows instead, roughly

@@ -513,9 +513,9 @@ class LinearOnSprings(LinearSystemBase):
             depth, push = model.depths[j][self.columns], model.pushes[j][self.columns]
             edge, damped, place = j in (0, last), model.springs.damping[j] > 0.0, 1 + j
             opens, closes = ("uplift", "impact") if edge else ("change", "change")
-            unloaded = self.event("change" if damped else opens, push, None, self.weight)
             if branch == LOADED:
-                found.append(replace(unloaded, target=_with(key, place, RECEDING if damped else LIFTED)))
+                following = _with(key, place, RECEDING if damped else LIFTED)
+                found.append(self.event("change" if damped else opens, push, following, self.weight))
             elif branch == LIFTED:
                 found.append(self.event(closes, depth, _with(key, place, LOADED), self.heave_scale))
             else:
