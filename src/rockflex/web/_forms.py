@@ -57,7 +57,10 @@ PRESETS: list[dict[str, Any]] = [
 
 
 OF_WHOLE = ("eccentricity", "leaning_masses", "stories")  # fields of every kind of structure
-FIRST = {"structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]), "scale": 2.0}
+FIRST: dict[str, Any] = {
+    "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
+    "scale": 2.0,
+}
 """What the page begins with: a pier that rocks."""
 
 

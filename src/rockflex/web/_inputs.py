@@ -15,7 +15,7 @@ from rockflex.web._structure import build_page_structure
 
 MOST = 600  # letters of the fields of a structure: reports have room for some more
 _OF_UNIT = {"m": "length", "N/m²": "elastic modulus", "Pa": "stress"}  # of several that have it in SI
-_QUANTITIES = {names[2]: quantity for quantity, names in reversed(QUANTITIES.items())} | _OF_UNIT
+_QUANTITIES = {names[2]: quantity for quantity, names in reversed([*QUANTITIES.items()])} | _OF_UNIT
 
 
 def input_notes(state: PageState, *, of_set: bool = False) -> list[str]:
