@@ -339,3 +339,17 @@ def test_figures_have_the_units_of_the_page(client) -> None:
         found[units] = " ".join(re.findall(r"<!-- (.*?) -->", figure.decode()))  # of glyphs, what they write
     assert "kip in" in found["kip-in"]
     assert "kip" not in found["SI"]
+
+
+def test_reports_say_what_they_were_computed_from(client) -> None:
+    """Tip mass, section, material and the factor for cracks, in the units of the page; and the scale in titles."""
+    section = {"shape": "box", "width": 3.0, "depth": 2.5, "wall": 0.4, "elastic_modulus": 31e9, "density": 2400.0}
+    pier = {"height": 24.0, "tip_mass": 910e3, "half_width": 3.5, "damping_ratio": 0.03, "base_mass": 0.0}
+    pier |= {"section": section | {"stiffness_factor": 0.6}}
+    state = client.state(structure={"name": "Pier", "cantilever": pier}, units="kN", scale=2.0, models=["2DOF-S"])
+    report = client.download("/api/file/report", state)[1].decode()
+    for text in ("tip mass 910 t", "box", "width 3 m", "depth 2.5 m", "31 GPa", "2400 kg/m³", "stiffness factor 0.6"):
+        assert text in report
+    kept = [{"name": "A", "structure": {"name": "Pier", "cantilever": pier | {"height": 20.0}}, "models": ["2DOF-S"]}]
+    compared = client.download("/api/file/comparison", state | {"alternatives": kept})[1].decode()
+    assert "EL-CENTRO-1940-NS × 2</title>" in compared

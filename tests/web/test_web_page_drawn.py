@@ -263,6 +263,15 @@ def test_leaning_masses_and_stories_that_yield(visitor) -> None:
     built = rf.YieldingStories(rf.Leaning(frame, 1e4), 4e5, 0.05)
     run = rf.simulate(built, rf.load_suite("el-centro-1940")[0], "MDOF-S", free_vibration=5.0)
     visitor.wait_for('[data-three="rotation"]', run.max_rotation)
+    page = visitor.respond()
+    for name, expected in {"ductility": run.ductility, "residual_drift": run.residual_drift}.items():
+        cells = page.locator(f'#floors [data-name="{name}"]').all()
+        found = [float(each.get_attribute("data-value")) for each in cells]
+        assert found[::-1] == pytest.approx(expected.tolist(), rel=1e-12)
+    assert page.locator("#floors tr.yields").count() == int((run.ductility > 1.0).sum())
+    said = f"Story {1 + int(run.ductility.argmax())} yields most"
+    assert (said in page.locator("#verdict").inner_text()) == bool(run.max_ductility > 1.0)
+    visitor.tab("structure")
     visitor.page.get_by_label("Kind", exact=True).select_option("block")
     visitor.page.wait_for_function("() => 'block' in rockflexPage.state.structure")
     assert visitor.page.locator('[data-path="structure.stories"]').count() == 0

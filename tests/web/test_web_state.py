@@ -304,6 +304,15 @@ def test_any_value_is_a_state_or_a_refusal(value) -> None:
         assert isinstance(parse_page_state(value), PageState)
 
 
+@given(st.sampled_from(sorted(PageState.model_fields)), values)
+def test_any_value_in_a_link_opens_or_not(name, value) -> None:
+    """Whatever stands in place of a part of a state, the others are as they were, or nothing opens."""
+    content = {"structure": FRAME, "head": {"title": "Kept"}, "free_vibration": 7.0, name: value}
+    found = usable_page_state(content, FRAME)
+    assert found is None or name == "head" or found["head"] == {"title": "Kept"}
+    assert found is None or name == "free_vibration" or found["free_vibration"] == 7.0
+
+
 def test_what_has_no_balance_says_why() -> None:
     held = FRAME | {"elements": [{"kind": "tendon", "initial_force": 1e5, "stiffness": 1e12}]}
     for structure, none in ((FRAME, None), (held, "the tendons always bring it back")):

@@ -5,6 +5,7 @@ from string import ascii_uppercase
 from typing import Any
 
 from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated, use_language
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.report.project._project import Project
@@ -103,8 +104,13 @@ def alternatives_view(state: PageState, uploads: UploadedRecords) -> dict[str, A
 def comparison_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
     """Return the name and the content of the report of all alternatives."""
     project = project_of_state(state, uploads)
-    with temporary_folder("alternatives") as folder, errors_as_refusals("alternatives"):
+    with temporary_folder("alternatives") as folder, errors_as_refusals("alternatives"), use_language(state.language):
         comparison = project.comparison(1, RUN_WORK_LIMIT)
         told: dict[str, Any] = {"units": state.units, "language": state.language, **project.head}
+        if state.scale != 1.0 and "title" not in told:
+            record = f"{project.motions[0].name or translated('a ground motion')} × {state.scale:g}"
+            told["title"] = translated(
+                "{structure} under {record}", structure=", ".join(project.structures), record=record
+            )
         file = write_report(comparison, folder / "comparison.html", **told)
         return file.name, file.read_bytes()

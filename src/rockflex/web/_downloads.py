@@ -19,6 +19,7 @@ from rockflex.studies.case import Case
 from rockflex.web._alternatives import comparison_report_file
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._folders import records_as_zip
+from rockflex.web._inputs import input_notes
 from rockflex.web._jobs import RunsJob
 from rockflex.web._projects import project_file
 from rockflex.web._record_sets import RECORD_SET_PAGE
@@ -49,7 +50,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
     record = f"{motion.name or translated('a ground motion')}{times}"
     name = state.structure.name or translated("Structure")
     usual = translated("{structure} under {record}", structure=name, record=record)
-    head: dict[str, Any] = {"title": usual, **state.head_texts()}
+    head: dict[str, Any] = {"title": usual, "notes": input_notes(state), **state.head_texts()}
     with errors_as_refusals("models"):
         text = run_report_as_html(
             found,

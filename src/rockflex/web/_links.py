@@ -1,5 +1,6 @@
 """Links with values that cannot be used: what opens all the same."""
 
+import json
 from copy import deepcopy
 from typing import Any, cast
 
@@ -36,7 +37,12 @@ def usable_page_state(content: dict[str, Any], structure: dict[str, Any]) -> dic
     opened = state.model_dump(exclude_none=True)
     for path, value in reversed(removed):
         _put_back(opened, path, value, usual)
-    return opened | ({"structure": own} if _can_be_drawn(own) else {})
+    opened |= {"structure": own} if _can_be_drawn(own) else {}
+    try:
+        json.dumps(opened, ensure_ascii=False).encode()
+    except UnicodeEncodeError:  # half a character
+        return None
+    return opened
 
 
 def _take_out(content: dict[str, Any], path: list[str], removed: _Removed, structure: dict[str, Any]) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 
 from rockflex.engine.stops import check_interruption
 from rockflex.foundation.json import as_json_value
-from rockflex.foundation.language import translated
+from rockflex.foundation.language import translated, use_language
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
@@ -25,6 +25,7 @@ from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._alternatives import model_of_alternative, next_free_name
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
+from rockflex.web._inputs import input_notes
 from rockflex.web._jobs import RunsJob
 from rockflex.web._limits import check_size_of_set, check_work_of_runs
 from rockflex.web._refusal import Refusal, errors_as_refusals
@@ -235,6 +236,10 @@ def _comparison_report(job: RecordSetJob, state: PageState) -> str:
     limits = [state.check_limits(friction=each.friction) for each in compared]
     tables = tuple(check(found, own) for found, own in zip(sets, limits, strict=True))
     told: dict[str, Any] = {"units": state.units, "language": state.language, **state.head_texts()}
+    if state.record_set.scale != 1.0 and "title" not in told:
+        known = {"structure": ", ".join(names), "n": len(job.study.motions)}
+        with use_language(state.language):
+            told["title"] = f"{translated('{structure} under {n} records', **known)} × {state.record_set.scale:g}"
     with errors_as_refusals("alternatives"):
         return run_report_as_html(comparison, sets=tuple(sets), checks=tables, **told)
 
@@ -323,14 +328,16 @@ def _record_set_figure(job: RecordSetJob, state: PageState) -> Any:
 def _record_set_report(job: RecordSetJob, state: PageState) -> str:
     found, study = _set_of_job(job, state), job.study
     name, n = study.own.state.structure.name or translated("Structure"), len(found.responses)
+    times = "" if state.record_set.scale == 1.0 else f" × {state.record_set.scale:g}"
+    text = "{structure} under {n} record" if n == 1 else "{structure} under {n} records"
+    head: dict[str, Any] = {"title": translated(text, structure=name, n=n) + times, **state.head_texts()}
     return run_report_as_html(
         found,
         structure=study.own.built.structure,
         units=state.units,
         language=state.language,
-        title=translated(
-            "{structure} under {n} record" if n == 1 else "{structure} under {n} records", structure=name, n=n
-        ),
+        notes=input_notes(state, of_set=True),
+        **head,
         limits=state.check_limits(friction=study.own.friction),
     )
 

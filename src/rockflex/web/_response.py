@@ -210,6 +210,8 @@ def floors_view(response: Response) -> list[dict[str, float]]:
         "floor_acceleration": peaks.floor_acceleration,
         "total_floor_displacement": peaks.total_floor_displacement,
     }
+    if response.ductility.size == floors.heights.size:  # stories that can yield
+        columns |= {"ductility": response.ductility, "residual_drift": response.residual_drift}
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True)) for row in rows][::-1]
 

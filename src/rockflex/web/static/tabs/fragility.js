@@ -49,7 +49,7 @@ export default function fragilityTab(app) {
   const study = new Study(app, "cloud", {
     results, show,
     words: { run: t("Run"), again: t("Run again"), none: t("No run yet."), changed: t("The input has changed: run again.") },
-    example: () => ({ models: [choice().models[0].replace("MDOF-S", "2DOF-S")], scales: [...new Set([choice().scales[0], choice().scales.at(-1)])] }),
+    example: () => ({ models: [choice().models[0]], scales: [...new Set([choice().scales[0], choice().scales.at(-1)])] }),
     key: () => JSON.stringify([assumed(app.state, choice().models), recordsOf(app.state, choice().suites), choice().scales]),
   });
   const element = h("div", { class: "columns" },

@@ -256,11 +256,20 @@ const FLOORS = [
   ["floor_acceleration", t("Acceleration [{unit}]"), "acceleration"], ["total_floor_displacement", t("Displacement [{unit}]"), "displacement"],
 ];
 
+const YIELDING = [["ductility", t("Ductility"), "ratio"], ["residual_drift", t("Residual drift [{unit}]"), "displacement"]];
+
+// The story that yields most, in words; nothing where none does.
+function yielding(floors) {
+  const most = floors.reduce((best, each, i) => ((each.ductility ?? 0) > (best.ductility ?? 1) ? { ...each, story: floors.length - i } : best), {});
+  return most.story ? [t("Story {story} yields most: ductility {ductility}, residual drift {drift}.", { story: most.story, ductility: number(most.ductility, 3), drift: inUnit(most.residual_drift, "displacement", 3) })] : [];
+}
+
 function byFloor(floors, model) {
+  const columns = [...FLOORS, ...YIELDING.filter(([name]) => floors[0][name] !== undefined)];
   return [h("h2", {}, t("Stories of {model}", { model })), scrolled(t("Largest values by story"), { id: "floors" },
-    tableOf([t("Story"), ...FLOORS.map(([, text, quantity]) => titled(text, quantity))], floors.map((each, i) => h("tr", {},
+    tableOf([t("Story"), ...columns.map(([, text, quantity]) => titled(text, quantity))], floors.map((each, i) => h("tr", { class: each.ductility > 1 ? "yields" : null },
       h("th", { scope: "row" }, String(floors.length - i)),
-      FLOORS.map(([name, , quantity]) => h("td", { "data-name": name, "data-value": each[name] }, valueIn(each[name], quantity))))))),
+      columns.map(([name, , quantity]) => h("td", { "data-name": name, "data-value": each[name] }, valueIn(each[name], quantity))))))),
   h("p", { class: "hint" }, t("Height and acceleration: of the floor above the story. Drift: of that floor over the one below, without the rotation of the base. Displacement: relative to the ground, rotation included."))];
 }
 
@@ -366,6 +375,7 @@ function summary(view) {
     }
   }
   const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);
+  said.push(...yielding(view.floors));
   if (fallen.length) said.push(t("With {models} it overturns.", { models: listed(fallen) }));
   return said.join(" ");
 }
