@@ -11,8 +11,12 @@ from rockflex.foundation.arrays import Array
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
-BARELY = 1e-12  # m: what has no initial force goes slack beyond this, so that it does not do so in full contact
+BARELY = 1e-12  # m: a tie without initial force goes slack beyond this, so that it does not do so in full contact
 BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
+
+
+def _barely(position: float | None) -> float:
+    return BARELY if position is None else 0.0
 
 
 class ElementTension(NamedTuple):
@@ -213,7 +217,7 @@ class ElasticElement(WithoutMemory):
         if self.stiffness == 0.0:
             return ()
         slack = branch == SLACK
-        place = -max(self.initial_force / self.stiffness, BARELY)
+        place = -(self.initial_force / self.stiffness or _barely(self.position))
         return (BranchLimit(slack, place, 0.0, ELASTIC if slack else SLACK),)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
@@ -295,7 +299,7 @@ class YieldingElement(ElementDefaults):
     def limits(self, branch: int) -> tuple[BranchLimit, ...]:
         reach, e0 = self.yield_force / self.stiffness, self.stretched
         breaks = () if np.isinf(self.rupture) else (BranchLimit(True, self.rupture, 0.0, BROKEN),)
-        empty, slack = 1.0 - self.ratio, -(e0 or BARELY)
+        empty, slack = 1.0 - self.ratio, -(e0 or _barely(self.position))
         if branch == ELASTIC:
             slackens = (BranchLimit(False, slack, empty, SLACK),) if self.pulls_only else ()
             return (
