@@ -29,6 +29,9 @@ TendonYieldRatio = Annotated[
 ]
 
 
+HAIR = 1e-14  # m: a tendon without prestress is this far from slack, so that rounding at rest does not make it so
+
+
 @described
 @dataclass(frozen=True, repr=False)
 class Tendon(BaseElement):
@@ -116,7 +119,7 @@ class Tendon(BaseElement):
         """Return it as its branches: elastic, slack, and those of a bar that yields or breaks."""
         if not self.dissipates:
             return ElasticElement(self.stiffness, self.initial_force, self.place)
-        stretched = self.initial_force / self.stiffness
+        stretched = max(self.initial_force / self.stiffness, HAIR)
         limit, ratio = self.yield_force, self.post_yield_ratio
         if limit is None or ratio is None:  # it snaps before any force at which it would yield
             limit, ratio = 2.0 * self.stiffness * (stretched + self.breaks_at), 0.0
