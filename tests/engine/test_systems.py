@@ -200,3 +200,22 @@ def test_a_jump_of_the_wrong_length_is_refused():
     run = Run(System(system.layout, system.outputs, phase, "flies"), 0.01, [0.01, 0.0])
     with pytest.raises(InputError, match="bounce"):
         run.advance(np.zeros(100))
+
+
+def test_a_linear_phase_that_a_run_holds_serves_others_of_the_system():
+    """As those for another time step; once no run holds it, it is asked for again."""
+    asked = list[object]()
+
+    def phase(key):
+        asked.append(key)
+        return LinearPhase(-np.eye(1), np.ones(1), np.zeros(1), np.eye(1), np.zeros(1), np.zeros(1))
+
+    system = System(StateLayout(place=1), ("place",), phase, "only")
+    runs = [Run(system, h) for h in (0.01, 0.02, 0.02)]
+    assert asked == ["only"]
+    for run in runs:
+        run.advance(np.ones(3))
+    assert runs[0].state[0] < runs[1].state[0] == runs[2].state[0]
+    del run, runs
+    Run(system, 0.01)
+    assert asked == 2 * ["only"]

@@ -9,15 +9,8 @@ from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import failures, tableau
+from rockflex.engine import tables as preparing
 from rockflex.engine.system import LinearPhase, up8
-from rockflex.engine.tables import (
-    FAST,
-    jump_table,
-    rates_and_rows,
-    shift_of,
-    tables_in_row_groups,
-    tables_of_nonlinear_phase,
-)
 
 LEVELS = ("", "baseline", "v3", "v4")
 
@@ -183,16 +176,7 @@ class Phases:
         events = found.events
         count: cython.int = len(events)
         systems = len(found.C)
-        outcomes = [outcome for event in events for outcome in (event, event.rest)]
-        jumps = [
-            outcome.jump if isinstance(getattr(outcome, "jump", None), np.ndarray) else None for outcome in outcomes
-        ]
-        rests = [event.rest for event in events]
-        more = [
-            np.array([event.scale for event in events]).reshape(count, systems).T,
-            *(jump_table(J, GROUP) for J in jumps if J is not None),
-            *(conditions_of(rest) for rest in rests if rest is not None),
-        ]
+        outcomes, jumps, rests, more = preparing.parts_of_events(events, systems, GROUP)
         shape: Shape
         shape.h = h
         content, offsets, halvings = tables_of_phase(found, cython.address(shape), more)
@@ -241,7 +225,7 @@ class Phases:
         self.known[place] = 2
         if shaken is None:
             return 0
-        content, offsets = joined([tables_in_row_groups(each, GROUP) for each in shaken[3:]])
+        content, offsets = preparing.laid(shaken[3:], GROUP)
         self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
         self.bind_system(place, which)
         return content.nbytes
@@ -543,43 +527,17 @@ def up8_(count: cython.int) -> cython.int:
     return (count + 7) // 8 * 8
 
 
-def conditions_of(rest):
-    """What follows instead of an event: columns y, a, 1, then what a_v multiplies: y, 1."""
-    more = np.zeros_like(rest.row) if rest.row_v is None else rest.row_v
-    return np.column_stack((rest.row, rest.direct, rest.constant, more, rest.direct_v))
-
-
-def joined(parts):
-    """The parts in one array, each from a line of the cache on; and where they begin."""
-    content, places = room_for([part.shape[1] for part in parts], len(parts[0]))
-    fill(content, places, parts)
-    return content, places
-
-
-def room_for(sizes, systems):
-    """An array with room for parts of these sizes of every system, each from a line of the cache on; their places."""
-    places = np.cumsum([0, *map(up8, sizes)], dtype=np.intp)
-    room = np.zeros(systems * int(places[-1]) + 8)
-    first = -(room.ctypes.data // 8) % 8
-    return room[first : first + systems * int(places[-1])].reshape(systems, -1), places
-
-
-def fill(content, places, parts):
-    """Put the parts at their places."""
-    for part, place in zip(parts, places, strict=False):
-        content[:, place : place + part.shape[1]] = part
-
-
 @cython.cfunc
 def tables_of_phase(found, shape: cython.pointer(Shape), more):
     """The tables of a stack of phases, each system's in a row, and more parts; their places; the halvings."""
     if not isinstance(found, LinearPhase):
-        known = tables_of_nonlinear_phase(found)
+        known = preparing.tables_of_nonlinear_phase(found)
         shape.n, shape.outputs, shape.rows, shape.shift = found.C.shape[2], known.outputs, known.rows, known.shift
         shape.parts = 0
-        return *joined([*(tables_in_row_groups(each, GROUP) for each in known[4:]), *more]), known.halvings
-    rates, rows = rates_and_rows(found)
-    shape.n, shape.outputs, shape.rows, shape.shift = rates.shape[1], found.d.shape[1], rows.shape[1], shift_of(rates)
+        return *preparing.laid(known[4:], GROUP, more), known.halvings
+    rates, rows = preparing.rates_and_rows(found)
+    shape.n, shape.outputs, shape.rows = rates.shape[1], found.d.shape[1], rows.shape[1]
+    shape.shift = preparing.shift_of(rates)
     return prepared(rates, rows, shape, more)
 
 
@@ -596,6 +554,8 @@ def prepared(
     k: cython.int
     most: cython.int = 0
     place: cython.Py_ssize_t
+    first: cython.p_double
+    here: cython.p_double
     given: cython.p_const_double = cython.address(rates[0, 0, 0])
     seen: cython.p_const_double = cython.address(rows[0, 0, 0]) if rows.shape[1] else given
     wide: cython.Py_ssize_t = n * (n + 2)
@@ -609,69 +569,32 @@ def prepared(
     modes: cython.double[::1] = memory
     for k in range(systems):
         turns[k] = LOOPS.turn(shape, given + k * wide, room)
-    chosen = np.flatnonzero(np.asarray(turns) > FAST)
+    chosen = np.flatnonzero(np.asarray(turns) > preparing.FAST)
     if chosen.size:
-        all_roots, columns = np.linalg.eig(np.asarray(rates)[chosen, :, :n])
-        roots: cython.double[:, ::1] = np.concatenate((all_roots.real, all_roots.imag), axis=1)
-        vectors: cython.double[:, :, ::1] = np.ascontiguousarray(
-            np.where(all_roots.imag[:, None] < 0.0, -columns.imag, columns.real)
-        )
+        roots: cython.double[:, ::1]
+        vectors: cython.double[:, :, ::1]
+        roots, vectors = preparing.roots_and_vectors(np.asarray(rates)[chosen, :, :n])
         places_of: cython.Py_ssize_t[::1] = chosen
         modes = np.empty(systems * of_modes)
         with cython.nogil:
             for k in range(places_of.shape[0]):
-                place = places_of[k]
+                place, first = places_of[k], cython.address(modes[places_of[k] * of_modes])
                 counts[place] = LOOPS.fast_modes(
-                    shape,
-                    cython.address(roots[k, 0]),
-                    cython.address(vectors[k, 0, 0]),
-                    room,
-                    cython.address(modes[place * of_modes]),
+                    shape, cython.address(roots[k, 0]), cython.address(vectors[k, 0, 0]), room, first
                 )
                 most = max(most, counts[place])
         shape.parts += 2 * most
         memory = np.empty(LOOPS.room(shape))
         room = cython.address(memory[0])
-    content, offsets = room_for([*sizes_of(shape), *(part.shape[1] for part in more)], systems)
-    fill(content, offsets[14:], more)
+    content, offsets = preparing.room_of_tables(systems, n, shape.outputs, shape.rows, shape.shift, shape.parts, more)
     halvings = np.zeros(systems, dtype=np.intc)
     found: cython.int[::1] = halvings
     tables: cython.double[:, ::1] = content
     places: cython.Py_ssize_t[::1] = offsets
     with cython.nogil:
         for k in range(systems):
+            first, here = cython.address(modes[k * of_modes if most else 0]), cython.address(tables[k, 0])
             found[k] = LOOPS.prepare(
-                shape,
-                given + k * wide,
-                seen + k * tall,
-                counts[k],
-                cython.address(modes[k * of_modes if most else 0]),
-                room,
-                cython.address(places[0]),
-                cython.address(tables[k, 0]),
+                shape, given + k * wide, seen + k * tall, counts[k], first, room, cython.address(places[0]), here
             )
     return content, offsets, halvings
-
-
-@cython.cfunc
-def sizes_of(shape: cython.pointer(Shape)):
-    """The sizes of the tables of a linear phase, as in `march.h`."""
-    n, m, rows, parts = shape.n, shape.outputs, shape.rows, shape.parts
-    later, bounds, now = n + AHEAD + 2, parts + 2, up8(n - shape.shift + rows - m) * (n + 2)
-    fast = 1 if parts > n else 0
-    return [
-        (up8(AHEAD * rows) + up8(n)) * later,
-        up8(n) * (n + 3),
-        up8(parts) * (n + 2),
-        now,
-        up8(m) * (n + 2),
-        up8((AHEAD + 1) * rows) * later,
-        up8(rows) * bounds,
-        up8(rows) * bounds * fast,
-        up8((AHEAD + 1) * rows) * later * fast,
-        up8(rows) * bounds,
-        up8(rows - m) * bounds,
-        up8(rows),
-        now,
-        up8(m) * (n + 2),
-    ]

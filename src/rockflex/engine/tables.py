@@ -1,12 +1,13 @@
 """The matrices of a phase for one time step in NumPy, as `prepare.h` makes them."""
 
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
+from rockflex.engine.system import Event, LinearPhase, NonlinearPhase, Rest, up8
 from rockflex.foundation.arrays import Array
 
 AHEAD, BLOCK = 4, 16  # as in march.h
@@ -317,6 +318,72 @@ def tables_in_row_groups(tables: Array, most: int) -> Array:
     bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
     parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
     return np.concatenate(parts, axis=1)
+
+
+def parts_of_events(
+    events: Sequence[Event], systems: int, group: int
+) -> tuple[list[Event | Rest | None], list[Array | None], list[Rest | None], list[Array]]:
+    """What follows each event, or instead of it; of each the jump, if it is a matrix; of each event what is instead.
+
+    Last the scales of the events, and these jumps and conditions, each with a row for every system.
+    """
+    outcomes = [outcome for event in events for outcome in (event, event.rest)]
+    given: list[Any] = [None if outcome is None else outcome.jump for outcome in outcomes]
+    jumps: list[Array | None] = [jump if isinstance(jump, np.ndarray) else None for jump in given]
+    rests = [event.rest for event in events]
+    scales = np.array([event.scale for event in events]).reshape(len(events), systems).T
+    tables = [jump_table(jump, group) for jump in jumps if jump is not None]
+    return outcomes, jumps, rests, [scales, *tables, *(conditions_of(rest) for rest in rests if rest is not None)]
+
+
+def conditions_of(rest: Rest) -> Array:
+    """What follows instead of an event: columns y, a, 1, then what a_v multiplies: y, 1."""
+    more = np.zeros_like(rest.row) if rest.row_v is None else rest.row_v
+    return np.column_stack((rest.row, rest.direct, rest.constant, more, rest.direct_v))
+
+
+def laid(tables: Iterable[Array], group: int, more: Sequence[Array] = ()) -> tuple[Array, NDArray[np.intp]]:
+    """Tables in groups of at most so many rows, and more parts, in one array; and where they begin."""
+    parts = [*(tables_in_row_groups(each, group) for each in tables), *more]
+    content, places = room_for([part.shape[1] for part in parts], len(parts[0]))
+    fill(content, places, parts)
+    return content, places
+
+
+def room_for(sizes: Iterable[int], systems: int) -> tuple[Array, NDArray[np.intp]]:
+    """An array with room for parts of these sizes of every system, each from a line of the cache on; their places."""
+    places = np.cumsum([0, *map(up8, sizes)], dtype=np.intp)
+    room = np.zeros(systems * int(places[-1]) + 8)
+    first = -(room.ctypes.data // 8) % 8
+    return room[first : first + systems * int(places[-1])].reshape(systems, -1), places
+
+
+def fill(content: Array, places: NDArray[np.intp], parts: Iterable[Array]) -> None:
+    """Put the parts at their places."""
+    for part, place in zip(parts, places, strict=False):
+        content[:, place : place + part.shape[1]] = part
+
+
+def room_of_tables(
+    systems: int, n: int, outputs: int, rows: int, shift: int, parts: int, more: Sequence[Array]
+) -> tuple[Array, NDArray[np.intp]]:
+    """An array with room for the tables of a linear phase, as in `march.h`, and with more parts; and their places."""
+    later, bounds, now = n + AHEAD + 2, parts + 2, up8(n - shift + rows - outputs) * (n + 2)
+    fast, outs, slopes = int(parts > n), up8(outputs) * (n + 2), up8((AHEAD + 1) * rows) * later
+    block = (up8(AHEAD * rows) + up8(n)) * later
+    bounded = up8(rows) * bounds
+    sizes = [block, up8(n) * (n + 3), up8(parts) * (n + 2), now, outs, slopes]
+    sizes += [bounded, bounded * fast, slopes * fast, bounded, up8(rows - outputs) * bounds, up8(rows), now, outs]
+    content, places = room_for([*sizes, *(part.shape[1] for part in more)], systems)
+    fill(content, places[len(sizes) :], more)
+    return content, places
+
+
+def roots_and_vectors(A: Array) -> tuple[Array, Array]:
+    """All roots, real parts and then imaginary ones, and vectors: of two conjugate ones the real and imaginary part."""
+    roots, columns = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(A))
+    vectors = np.where(roots.imag[:, None] < 0.0, -columns.imag, columns.real)
+    return np.concatenate((roots.real, roots.imag), axis=1), np.ascontiguousarray(vectors)
 
 
 def jump_table(jump: Array, most: int) -> Array:
