@@ -33,7 +33,7 @@ class SteelBar(rf.ElementLaw):
     """The law of `FUSE`, as a user would write it, who also says what else it has of a fuse."""
 
     title = "Steel bar"
-    drawn_as = "fuse"
+    symbol = "fuse"
     fuse = True
 
     stiffness: float = field(metadata={"description": "the stiffness", "unit": "N/m"})
@@ -115,7 +115,7 @@ def test_a_law_of_ones_own_answers_as_the_element_that_it_describes():
     assert BAR.extremes(-0.004, 0.004)[1] is FUSE.extremes(-0.004, 0.004)[1] is False
     assert BAR.locked_force == pytest.approx(FUSE.locked_force, rel=1e-12)
     names = ("dissipates", "recentres", "sticks", "breaks_at", "dissipator_force", "largest_stiffness", "force_at_rest")
-    for name in (*names, "fuse", "drawn_as", "prestressed", "rate_dependent", "restoring_stiffness"):
+    for name in (*names, "fuse", "symbol", "prestressed", "rate_dependent", "restoring_stiffness"):
         assert getattr(BAR, name) == getattr(FUSE, name), name
 
 

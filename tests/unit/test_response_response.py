@@ -29,7 +29,7 @@ QUANTITIES = (
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
     "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
-    "total_floor_displacement", "element_force", "element_elongation", "element_energy",
+    "total_floor_displacement", "element_force", "element_elongation", "element_energy", "element_state",
     "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
 KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}

@@ -206,6 +206,7 @@ VALUES = {
     RockingModel: lambda: RockingModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05), complete=True),
 }  # fmt: skip
 STUDIES = {
+    rf.Case: lambda: rf.Case(**STUDY),
     rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
     rf.DesignStudy: lambda: rf.DesignStudy(**STUDY, half_widths=[1.0, 1.5], level=0.5),
     rf.IncrementalStudy: lambda: rf.IncrementalStudy(**STUDY),

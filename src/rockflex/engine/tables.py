@@ -287,6 +287,7 @@ def spectral_radius_bound(A: Array) -> Array:
     return np.asarray(np.sqrt((power * power).sum(axis=(1, 2))) ** (1.0 / 16.0))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of a step that is too long, which is refused later
 def exponentials_less_identity(G: Array, halvings: int) -> list[Array]:
     """exp(G/2^k) - 1 for k = 0, 1, .., by the Taylor series of the last one, and squaring.
 
