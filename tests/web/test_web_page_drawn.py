@@ -55,6 +55,19 @@ def test_the_page_begins_with_a_pier_that_moves(visit) -> None:
     page.wait_for_function(f"() => {TIME} < 5")  # it begins again at the end
 
 
+def test_a_line_says_whether_it_rocks(visit) -> None:
+    visitor = visit()
+    line = visitor.page.locator("#rocks")
+    share = rf.CantileverWithTipMass(**PIER["cantilever"]).rocking().nominal_overturning_rotation
+    visitor.page.wait_for_selector("#rocks[data-status=rocking]")
+    visitor.wait_for_results()
+    assert f"{100 * visitor.value('[data-three=rotation]') / share:.3g}" in line.inner_text()
+    visitor.fill("few.scale", "0.01")
+    visitor.page.wait_for_selector("#rocks[data-status=no_uplift]:not(.overturned)")
+    visitor.fill("few.scale", "20")
+    visitor.page.wait_for_selector("#rocks.overturned")
+
+
 def test_it_stands_still_for_those_who_want_that(visit) -> None:
     visitor = visit(reduced_motion="reduce")
     page = visitor.page

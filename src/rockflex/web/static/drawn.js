@@ -202,16 +202,17 @@ export function drawing(app, settle) {
 
   const figures = h("dl", { class: "values three", id: "three" });
   const note = h("p", { class: "hint", hidden: true });
-  stage.element.after(figures, note);
+  const verdict = h("p", { class: "answer", id: "rocks", role: "status" });
+  stage.element.after(verdict, figures, note);
   // What is shown is not of the present state.
-  const stale = (on) => [stage.canvas, figures].forEach((each) => each.classList.toggle("stale", on));
+  const stale = (on) => [stage.canvas, verdict, figures].forEach((each) => each.classList.toggle("stale", on));
   const quick = few(app, () => view, settle, stale);
 
   // Show the response of a structure.
   function set(run, of) {
     note.hidden = !run.note;
     note.textContent = run.note ?? "";
-    figures.hidden = Boolean(run.note);
+    figures.hidden = verdict.hidden = Boolean(run.note);
     if (run.note) return;
     const first = !view;
     const [m] = run.models;
@@ -221,6 +222,11 @@ export function drawing(app, settle) {
     player.set(view);
     place();
     figures.replaceChildren(...three(m, run));
+    const over = m.status === "overturned" || m.peaks.max_rotation > run.nominal;
+    verdict.dataset.status = m.status;
+    verdict.classList.toggle("overturned", over);
+    verdict.textContent = m.status === "overturned" ? t("It overturns.") : m.status !== "rocking" ? t("It does not rock.")
+      : t("It rocks, up to {share} of the limit of the rotation.", { share: inUnit(m.peaks.max_rotation / run.nominal, "share", 3) });
     const now = performance.now();
     if (!stage.held || now - told > SELDOM) {
       told = now;

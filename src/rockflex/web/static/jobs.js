@@ -194,7 +194,7 @@ export class Study {
     this.bar.value = answer.done / answer.total;
     for (const button of this.needRuns) button.disabled = !(answer.ready ?? answer.done) || Boolean(this.looked);
     this.status.textContent = [
-      this.looked ? t("A quick look, with fewer runs.") : "", STUDY_STATUS[answer.status](answer), on ? this.#left(answer) : "", old ? this.words.changed : "",
+      this.looked ? t("A quick look, with fewer runs.") : "", [STUDY_STATUS[answer.status](answer), on && this.#left(answer)].filter(Boolean).join(" · "), old ? this.words.changed : "",
     ].filter(Boolean).join(" ");
     this.results.classList.toggle("stale", old);
     this.show(answer);
