@@ -211,7 +211,7 @@ def test_values_out_of_range_name_file_and_table(failing, change, said):
 def test_one_structure_a_file(failing, text, found):
     message = failing(text)
     assert message.startswith(": one structure is expected, [frame], [fish_bone], ")
-    assert message.endswith(f"[properties] or [block], but {found} found.")
+    assert message.endswith(f"[block] or [rocking_frame], but {found} found.")
 
 
 def test_a_table_is_expected(failing):

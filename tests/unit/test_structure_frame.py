@@ -150,6 +150,9 @@ def test_scaled_parameters_are_those_of_the_assembled_frame(n, ratio):
     for field in dataclasses.fields(scaled):
         if field.name not in ("floors", "elements"):
             value = getattr(scaled, field.name)
+            if value is None or isinstance(value, str):
+                assert value == getattr(assembled, field.name)
+                continue
             np.testing.assert_allclose(value, getattr(assembled, field.name), rtol=1e-9, err_msg=field.name)
     for name in ("heights", "displacement", "force"):
         value, other = (getattr(each.floors, name) for each in (scaled, assembled))

@@ -38,8 +38,9 @@ def restitution_from_decay(peaks: ArrayLike, properties: RockingProperties) -> f
     >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     >>> start = rf.InitialState(rotation=0.1)
     >>> law = rf.AngularMomentum(0.9)
-    >>> run = rf.simulate(block, rf.quiet_motion(4.0), "rigid-C", impact=law, initial=start)
-    >>> turns = [abs(run.rotation).max(where=run.side == side, initial=0.0) for side in (1, -1)]
+    >>> run = rf.simulate(block, rf.quiet_motion(4.0), "rigid-C",
+    ...     impact=law, initial=start)
+    >>> turns = [abs(run.rotation[run.side == side]).max() for side in (1, -1)]
     >>> round(rf.restitution_from_decay(turns, block), 3)
     0.9
     """

@@ -42,8 +42,8 @@ class ImpactLaw(Protocol):
     >>> class Half:
     ...     keeps = "half of every modal velocity"
     ...     loses = "the rotation, and the other half"
-    ...     def after(self, properties, modal_velocity, rotation_velocity, modal_displacement):
-    ...         return 0.5 * modal_velocity, 0.0
+    ...     def after(self, properties, velocity, spin, displacement):
+    ...         return 0.5 * velocity, 0.0
     ...
     >>> isinstance(Half(), rf.ImpactLaw)
     True
@@ -374,10 +374,12 @@ class AngularMomentum(RuledLaw):
     --------
     >>> import rockflex as rf
     >>> column = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=8e10, base_mass=10e3, half_width=2.0, damping_ratio=0.05
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=8e10, base_mass=10e3,
+    ...     half_width=2.0, damping_ratio=0.05
     ... )
     >>> start = rf.InitialState(rotation=0.05)
-    >>> run = rf.simulate(column, rf.quiet_motion(8.0), impact=rf.AngularMomentum(0.8), initial=start)
+    >>> law = rf.AngularMomentum(0.8)
+    >>> run = rf.simulate(column, rf.quiet_motion(8.0), impact=law, initial=start)
     >>> run.n_impacts, round(run.guarded_impacts, 2)
     (21, 0.29)
     """
@@ -427,9 +429,13 @@ class PivotImpulse(RuledLaw):
     Examples
     --------
     >>> import numpy as np, rockflex as rf
-    >>> frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, period=0.5, aspect_ratio=10.0, damping_ratio=0.02).rocking()
-    >>> [round(rf.PivotImpulse().after(frame.truncated(n), np.zeros(n), -0.1)[1], 4) for n in (1, 5)]
-    [-0.0249, 0.0]
+    >>> frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, period=0.5, aspect_ratio=10.0,
+    ...     damping_ratio=0.02).rocking()
+    >>> for n in (1, 5):
+    ...     _, spin = rf.PivotImpulse().after(frame.truncated(n), np.zeros(n), -0.1)
+    ...     print(round(spin, 4))
+    -0.0249
+    0.0
     """
 
     keeps = "the angular momentum about the new pivot, with no impulse on the modes"

@@ -135,7 +135,8 @@ def rocking_frame(
     Examples
     --------
     >>> import rockflex as rf
-    >>> frame = rf.rocking_frame(n_columns=4, column_width=1.6, column_height=9.6, column_mass=60e3, cap_mass=240e3)
+    >>> frame = rf.rocking_frame(n_columns=4, column_width=1.6,
+    ...     column_height=9.6, column_mass=60e3, cap_mass=240e3)
     >>> round(frame.restitution, 4), round(frame.uplift_acceleration, 3)
     (0.9493, 1.635)
     """
