@@ -168,16 +168,18 @@ def test_an_overturning_spectrum_without_impact_is_the_closed_form(form, ratios)
 
 
 def test_with_housners_impact_the_upper_boundary_is_the_one_without_impact():
-    table = rf.overturning_spectrum(BLOCK, PULSES[full_sine], [3.0, 5.0], "rigid", tolerance=1e-8)
+    with pytest.warns(UserWarning, match="small rotations"):
+        table = rf.overturning_spectrum(BLOCK, PULSES[full_sine], [3.0, 5.0], "rigid", tolerance=1e-8)
     np.testing.assert_allclose(table["highest_standing"], thresholds(full_sine, [3.0, 5.0]), rtol=2e-6)
     assert (table["lowest"] < 0.5 * table["highest_standing"]).all()
 
 
 @pytest.mark.slow
 def test_a_half_sine_overturns_without_impact_whatever_the_impact():
-    stuck, rocking = (
-        rf.overturning_spectrum(BLOCK, PULSES[half_sine], [2.0, 5.0], "rigid", impact=law) for law in (STICKS, None)
-    )
+    with pytest.warns(UserWarning, match="small rotations"):
+        stuck, rocking = (
+            rf.overturning_spectrum(BLOCK, PULSES[half_sine], [2.0, 5.0], "rigid", impact=law) for law in (STICKS, None)
+        )
     np.testing.assert_allclose(stuck["lowest"], rocking["lowest"], rtol=2e-6)
 
 

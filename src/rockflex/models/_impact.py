@@ -432,7 +432,8 @@ class PivotImpulse(RuledLaw):
     >>> frame = rf.Frame(5, 3.0, 40e3, 40e3, 0.0, period=0.5, aspect_ratio=10.0,
     ...     damping_ratio=0.02).rocking()
     >>> for n in (1, 5):
-    ...     _, spin = rf.PivotImpulse().after(frame.truncated(n), np.zeros(n), -0.1)
+    ...     p = frame.truncated(n)
+    ...     _, spin = rf.PivotImpulse().after(p, np.zeros(n), -0.1)
     ...     print(round(spin, 4))
     -0.0249
     0.0

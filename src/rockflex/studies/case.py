@@ -185,7 +185,8 @@ class Case(RunsKeys):
     >>> import rockflex as rf
     >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
     >>> records = {"suites": ["el-centro-1940"]}
-    >>> case = rf.Case(structures={"block": block}, records=records, models=["rigid"])
+    >>> case = rf.Case(structures={"block": block}, records=records,
+    ...     models=["rigid"])
     >>> case.run()[["structure", "motion", "status"]]
       structure             motion   status
     0     block  EL-CENTRO-1940-NS  rocking

@@ -25,7 +25,8 @@ export const kindOf = (structure, kinds) => Object.keys(kinds).find((key) => str
 
 // What a structure measures, and how each measure is set: half width, height and first period, where they are in a field
 // of its form. The others stay as they are, so a wider frame of the same period has another slenderness. `view` is of the
-// structure `of`, and `structure` may have changed since: each measure is what the fields of `structure` make of it.
+// structure `of`, and `structure` may have changed since: each measure is what the fields of `structure` make of it, NaN of a
+// text that is no number.
 export function measures(structure, view, kinds, of = structure) {
   const kind = kindOf(structure, kinds);
   const [values, seen] = [structure[kind], of[kind]];
@@ -37,7 +38,7 @@ export function measures(structure, view, kinds, of = structure) {
   const found = {};
   if (kind === "block") {
     const sized = "width" in values; // or by slenderness and half diagonal
-    const [half, tall] = sized ? [values.width / 2, values.height] : [values.half_diagonal * Math.sin(values.slenderness), 2 * values.half_diagonal * Math.cos(values.slenderness)];
+    const [half, tall] = sized ? [values.width / 2, Number(values.height)] : [values.half_diagonal * Math.sin(values.slenderness), 2 * values.half_diagonal * Math.cos(values.slenderness)];
     const block = (b, h) => ({ ...clone(structure), block: { mass: values.mass, width: Number((2 * b).toPrecision(6)), height: Number(h.toPrecision(6)) } });
     const fields = sized ? ["width", "height"] : ["slenderness", "half_diagonal"];
     if (half > 0) Object.assign(found, { B: { value: half, fields, set: (v) => block(v, tall) }, H: { value: tall, fields, set: (v) => block(half, v) } });
@@ -47,7 +48,7 @@ export function measures(structure, view, kinds, of = structure) {
   const [high, stiff] = [HEIGHTS[kind], STIFFNESSES.filter((name) => name in seen)];
   const tall = H * grown(high);
   const wide = direct ?? ["column_width"].find((name) => name in seen) ?? "aspect_ratio";
-  const half = direct ? values[direct] : wide === "aspect_ratio" ? (B * grown(high)) / grown(wide) : B * grown(wide);
+  const half = direct ? Number(values[direct]) : wide === "aspect_ratio" ? (B * grown(high)) / grown(wide) : B * grown(wide);
   const aspect = (h, b) => (wide === "aspect_ratio" ? scaled([wide], (h / H) * (B / b)) : scaled([wide], b / B));
   if (kind !== "properties") found.B = { value: half, fields: [wide], set: (v) => into(direct ? { [direct]: v } : aspect(tall, v)) };
   if (high && !values.z && !values.lumped_masses)
