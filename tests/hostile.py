@@ -358,17 +358,17 @@ def studies() -> Calls:
         ),
         "overturning_scales": (
             rf.overturning_scales,
-            {"structure": block, "motion": motion, "scales": [1.0, 5.0], "model": "rigid", "impact": None,
+            {"structure": block, "motion": motion, "scales": [1.0, 5.0], "model": "rigid-C", "impact": None,
              "tolerance": 1e-2},
         ),
         "overturning_spectrum": (
             rf.overturning_spectrum,
-            {"structure": block, "pulse": rf.half_sine_pulse, "frequency_ratios": [2.0], "model": "rigid",
+            {"structure": block, "pulse": rf.half_sine_pulse, "frequency_ratios": [2.0], "model": "rigid-C",
              "impact": None, "relative_amplitudes": (1.0, 3.0), "tolerance": 1e-2, "workers": 1},
         ),
         "rocking_spectrum": (
             rf.rocking_spectrum,
-            {"motion": motion, "slendernesses": [0.2], "periods": [2.0], "model": "rigid", "impact": None,
+            {"motion": motion, "slendernesses": [0.2], "periods": [2.0], "model": "rigid-C", "impact": None,
              "free_vibration": 0.0, "workers": 1},
         ),
         "draw_prototype": (rf.draw_prototype, {"seed": 0, "number": 0, "n_records": 1}),

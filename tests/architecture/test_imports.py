@@ -70,6 +70,7 @@ ONE_TOPIC = {
     "rockflex.response._history",
     "rockflex.engine.flow",
     "rockflex.models._rocking_model",
+    "rockflex.models._fields",
     *(f"rockflex.plot._{each}" for each in ("fragility", "history", "loops")),
 }
 

@@ -79,7 +79,8 @@ def counted(table):
 def test_the_friction_that_is_needed_says_the_same(standing):
     for run in standing.response.iloc[::9]:
         assert math.isinf(run.required_friction) == (run.min_vertical_reaction <= 0.0)
-        assert bool(run.warnings) == (run.min_vertical_reaction < 0.0)
+        told = any("vertical reaction" in text for text in run.warnings)
+        assert told == (run.min_vertical_reaction < 0.0)
 
 
 @pytest.mark.slow

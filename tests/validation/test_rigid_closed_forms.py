@@ -160,7 +160,8 @@ def thresholds(form, frequencies):
 @pytest.mark.slow
 @pytest.mark.parametrize(("form", "ratios"), [(half_sine, [2.0, 5.0, 10.0]), (full_sine, [2.0, 3.0, 5.0])])
 def test_an_overturning_spectrum_without_impact_is_the_closed_form(form, ratios):
-    table = rf.overturning_spectrum(BLOCK, PULSES[form], ratios, impact=STICKS, tolerance=1e-8)
+    with pytest.warns(UserWarning, match="small rotations"):
+        table = rf.overturning_spectrum(BLOCK, PULSES[form], ratios, "rigid", impact=STICKS, tolerance=1e-8)
     # The pulse is piecewise linear: its amplitude is short by some (2 π/steps)²/12.
     np.testing.assert_allclose(table["lowest"], thresholds(form, ratios), rtol=2e-6)
     assert (table["impacts"] == 0).all()

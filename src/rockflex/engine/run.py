@@ -62,8 +62,7 @@ class Run:
     size
         Memory that the run holds, in bytes: phases and their tables, a history, and room.
     memory
-        Limit of the memory of the phases: beyond it those that were not used for longest are forgotten, and prepared
-        again if met again.
+        Limit of the memory of phases: those unused for longest are forgotten, and prepared again if met again.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str

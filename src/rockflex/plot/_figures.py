@@ -41,14 +41,11 @@ from rockflex.foundation.units import (
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
-BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"
-YELLOW = "#f0e442"
+BLUE, ORANGE, SKY, PURPLE, YELLOW = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7", "#f0e442"
 SHADE = "#e9edf2"
 SMALL = "small"  # letters of notes, relative to font.size
-
 _FONT = 9.0
 MAX_LEGEND_COLUMNS = 8
-
 NOTEBOOK_DPI, PIXEL_RATIO = 100, 2  # points of a notebook an inch, and dots a point: sharp on screens of many dots
 
 _STYLE: dict[Any, Any] = {
@@ -137,13 +134,12 @@ _LINES = ("-", "--", "-.", ":")
 
 def given_line_styles(lines: Lines, count: int) -> list[LineStyle]:
     """Return the line styles that a caller gives; plain names are colours that colour-blind readers can tell apart."""
-    given = list(lines)
-    if len(given) != count or not all(is_color_like(color) and style in _LINES for color, style in given):
+    if len(lines) != count or not all(is_color_like(color) and style in _LINES for color, style in lines):
         raise InputError(
             f"lines must be {count} pairs of a colour and one of {', '.join(_LINES)}, one per response, such as "
             f'("black", "-"), but {shown(lines)} was given.'
         )
-    return [LineStyle(_NAMED.get(color, color), style) for color, style in given]
+    return [LineStyle(_NAMED.get(color, color), style) for color, style in lines]
 
 
 Size = Literal["column", "page"] | tuple[float, float]
@@ -361,8 +357,7 @@ def is_narrow() -> bool:
 
 def is_height_given() -> bool:
     """Whether the caller has asked for a height of the figure."""
-    asked = _SIZE.get()
-    return asked is not None and asked[1] is not None
+    return (_SIZE.get() or (None, None))[1] is not None
 
 
 def scaled_font_size(size: float) -> float:
