@@ -225,8 +225,8 @@ def float_array(values: ArrayLike, *, booleans: bool = False) -> Array | None:
 
 def is_masked_array(given: object) -> bool:
     """Return whether an object is a masked array of NumPy, without loading numpy.ma, which takes some 20 ms."""
-    masked = sys.modules.get("numpy.ma")
-    return masked is not None and isinstance(given, masked.MaskedArray)
+    masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", None)  # None while another thread imports it
+    return masked is not None and isinstance(given, masked)
 
 
 def masked_count(values: object, depth: int = 2) -> int:

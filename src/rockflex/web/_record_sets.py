@@ -122,7 +122,13 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
             others.append(runs(kept.name, state.kept_state(kept), model_of_alternative(kept), "alternatives"))
     if others and own.built.properties.n_modes and FIXED not in (each.name for each in others):
         others.append(runs(FIXED, state, FIXED, "alternatives"))
-    check_size_of_set([each.case for each in (own, *others)], motions, "record_set.suites")
+    try:
+        check_size_of_set([each.case for each in (own, *others)], motions, "record_set.suites")
+    except Refusal:
+        if not others:
+            raise
+        others = []  # the present structure alone may fit
+        check_size_of_set([own.case], motions, "record_set.suites")
     with errors_as_refusals("record_set.rule"):
         checked_rule(choice.rule or None, len(motions))
     periods = None

@@ -321,8 +321,8 @@ def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
 
 
 def _tendon_at(p: RockingProperties, row: Any) -> dict[str, float] | None:
-    """Return the tendon of an answer on a base of the width found; None where there is none."""
-    if not (row.half_width > 0.0 and row.prestress_ratio > 0.0):
+    """Return the tendon of an answer on a base of the width found; None where there is none, or the structure's own."""
+    if p.elements or not (row.half_width > 0.0 and row.prestress_ratio > 0.0):
         return None
     level = TendonLevel(float(row.prestress_ratio), float(row.stiffness_ratio))
     (tendon, *_) = level.held(p.with_half_width(float(row.half_width))).tendons
