@@ -109,7 +109,7 @@ def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) 
     visitor = visit(link(state))
     visitor.respond(1, ["2DOF-S", "fixed"])
     cell = visitor.page.locator('#peaks tr[data-model="2DOF-S"] [data-name="max_total_top_displacement"]')
-    assert cell.inner_text() == "–"
+    assert cell.count() == 0  # no column of what no model has
     assert visitor.page.get_by_label("Plotted top displacement").is_hidden()
     assert "relative to the ground" not in visitor.page.locator("#verdict").inner_text()
     _, content = client.download("/api/file/histories", state)
