@@ -21,7 +21,7 @@ const YIELDING = [
   ["1DOF-fixed-BW", t("first mode, which yields; base held down")],
 ];
 
-const RIGID = ["block", "rocking_frame"]; // kinds of structures without modes
+const RIGID = ["block", "rocking_frame"]; // kinds of structures without modes, which all models but one need
 
 export const isRigid = (structure) => RIGID.some((kind) => kind in structure);
 
@@ -33,9 +33,6 @@ export function explained(label) {
 
 // Whether a model can stand on springs, or slide.
 export const grounded = (label) => !/fixed/.test(label);
-
-// A rigid block has no modes, and all models but one need some.
-export const isBlock = (structure) => "block" in structure;
 
 export const yields = (label) => label.includes("-BW");
 
@@ -79,12 +76,12 @@ export function models(path, chosen, most, change) {
   draw();
   const element = h("div", { class: "field", "data-path": path },
     h("div", { class: "label" }, t("Models (up to {most})", { most })), chips, other, trouble());
-  // The chosen models of a state, which may have some that yield; a rigid block has one model.
+  // The chosen models of a state, which may have some that yield; a rigid structure has one model.
   element.setValue = (value, { structure, bouc_wen }) => {
     now = clone(value);
-    const block = isBlock(structure);
-    offered = block ? MODELS.filter(([label]) => label === "rigid") : bouc_wen ? [...MODELS, ...YIELDING] : MODELS;
-    other.hidden = block;
+    const rigid = isRigid(structure);
+    offered = rigid ? MODELS.filter(([label]) => label === "rigid") : bouc_wen ? [...MODELS, ...YIELDING] : MODELS;
+    other.hidden = rigid;
     const key = JSON.stringify([now, offered]);
     if (key === element.dataset.drawn) return;
     element.dataset.drawn = key;

@@ -1,7 +1,7 @@
 // Design: how wide must the base be, and does a tendon help?
 
 import { Chart } from "../chart.js";
-import { isBlock, measuresOf, unitOf } from "../choices.js";
+import { isRigid, measuresOf, unitOf } from "../choices.js";
 import { h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { measures } from "../drawn.js";
 import { assumed, choices, recordsOf, Remarks, Study, undecided } from "../jobs.js";
@@ -126,7 +126,7 @@ export default function designTab(app) {
     suites.refresh();
     limit.setValue(choice().limit);
     measure.setValue(choice().measure);
-    const offered = new Set([...(isBlock(app.state.structure) ? ["rigid"] : MODELS), ...(app.state.bouc_wen ? YIELDING : []), choice().model]);
+    const offered = new Set([...(isRigid(app.state.structure) ? ["rigid"] : MODELS), ...(app.state.bouc_wen ? YIELDING : []), choice().model]);
     model.setOptions([...offered].map((label) => [label, label]), choice().model);
     rotation.hidden = choice().limit !== "rotation";
     at.setUnit(unitOf(app.about, choice().measure));

@@ -1,6 +1,6 @@
 // The choices of the runs: models, free vibration, impact law, and whether the superstructure yields.
 
-import { isBlock, models, yields } from "../choices.js";
+import { isRigid, models, yields } from "../choices.js";
 import { h, symbol } from "../dom.js";
 import { select, slider, tableField, trouble } from "../form.js";
 import { t } from "../texts.js";
@@ -64,7 +64,7 @@ export function runs(app, suggested) {
   function refresh() {
     const { state } = app;
     labels.setValue(state.models, state);
-    yielding.hidden = isBlock(state.structure);
+    yielding.hidden = isRigid(state.structure);
     free.setValue(state.free_vibration);
     const law = chosen(state);
     impact.setValue(law ? key(law) : "");
