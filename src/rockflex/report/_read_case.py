@@ -10,7 +10,7 @@ from rockflex.report.project._project import SUFFIX, Project, read_project
 from rockflex.structure.file._object_tables import CLASS
 from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_file import read_toml_file
-from rockflex.studies._run_study import load_study
+from rockflex.studies._run_study import study_in_file
 from rockflex.studies._study_kind import study_kind_named
 from rockflex.studies.case import Case, case_in_file
 from rockflex.studies.folders._folder import StudyFolder
@@ -64,7 +64,7 @@ def read_case(path: str | Path) -> Case | StudySpec | Project:
         return read_project(file)
     content = read_toml_file(file, "case")
     if "study" in content:
-        return load_study(file)
+        return study_in_file(file, content)
     if "structures" not in content and any(key in content for key in (CLASS, *KINDS)):
         raise InputError(
             f"{file} is the file of a structure, and a case also needs records. Write a file with [[structures]] and "

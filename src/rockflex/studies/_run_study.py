@@ -1,8 +1,9 @@
 """Loading a study from a file, and running it: here or on a cluster, in memory or in a resumable folder."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 from rockflex.foundation.checks import checked_whole_number
 from rockflex.foundation.errors import InputError
@@ -62,7 +63,17 @@ def load_study(path: str | Path) -> StudySpec:
     10
     """
     file = checked_file_path("path", path)
-    content = read_toml_file(file, "study")
+    return study_in_file(file, read_toml_file(file, "study"))
+
+
+def study_in_file(file: Path, content: Mapping[str, Any]) -> StudySpec:
+    """Return the study that a file holds; paths in it start from its folder.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or a value is wrong; the message names file and key.
+    """
     try:
         return study_kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
     except InputError as error:
