@@ -30,6 +30,8 @@ RESTITUTION = Described(
     metavar="E",
     hint="From 0 to 1; with --impact restitution, or as measured with --impact angular-momentum.",
 )
+SHORTEST_EXCURSION = 1e-4  # s: after an impact, the duration of one that counts, unless the law says another
+ShortestExcursion = Annotated[float, Described("the shortest duration of an excursion", "s", rule="positive")]
 
 
 class ImpactSchema:

@@ -13,16 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.descriptions import Described, described, described_arguments
+from rockflex.foundation.descriptions import described, described_arguments
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import rounded_number
-from rockflex.foundation.schema import RESTITUTION
+from rockflex.foundation.schema import RESTITUTION, SHORTEST_EXCURSION, ShortestExcursion
 from rockflex.foundation.shown import shown
 from rockflex.models._rebound import Rebound
 from rockflex.structure._rocking import RockingProperties
-
-SHORTEST_EXCURSION = 1e-4  # s: after an impact, the duration of one that counts, unless the law says another
 
 
 @runtime_checkable
@@ -319,9 +317,7 @@ class Restitution(RuledLaw):
     """
 
     e: Annotated[float, RESTITUTION]
-    shortest_excursion: Annotated[float, Described("the shortest duration of an excursion", "s", rule="positive")] = (
-        SHORTEST_EXCURSION
-    )
+    shortest_excursion: ShortestExcursion = SHORTEST_EXCURSION
 
     keeps = "the horizontal velocity of every mass, and a share of the rotation"
     loses = "the rest of the rotation's energy"

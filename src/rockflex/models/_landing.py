@@ -10,11 +10,11 @@ from rockflex.engine.field import Field
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite, checked_finite_vector
 from rockflex.foundation.errors import InputError, SolverError
+from rockflex.foundation.schema import SHORTEST_EXCURSION
 from rockflex.foundation.shown import shown
 from rockflex.models._elements import CLOSED
 from rockflex.models._fields import Landing
 from rockflex.models._impact import (
-    SHORTEST_EXCURSION,
     ImpactLaw,
     LandingRule,
     Rebound,

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_in_range
-from rockflex.foundation.descriptions import Described, described
-from rockflex.foundation.schema import RESTITUTION
+from rockflex.foundation.descriptions import described
+from rockflex.foundation.schema import RESTITUTION, SHORTEST_EXCURSION, ShortestExcursion
 from rockflex.structure._rocking import RockingProperties
 
 
@@ -19,9 +19,7 @@ class Rebound:
     """
 
     e: Annotated[float, RESTITUTION]
-    shortest_excursion: Annotated[float, Described("the shortest duration of an excursion", "s", rule="positive")] = (
-        1e-4
-    )
+    shortest_excursion: ShortestExcursion = SHORTEST_EXCURSION
 
     keeps = "the horizontal velocity of every mass, and a share of the rotation, turned back"
     loses = "the rest of the rotation's energy"
