@@ -68,6 +68,23 @@ def vector_field(model, side, branch=1, kinds=(), levers=None):
     return RockingField(field_numbers(model, kinds, levers), side, branch, pulls, [])
 
 
+def fuse_branches(bar):
+    """The branches of a fuse that a user writes as a law, with `stiffness`, `yield_force` and `ratio`."""
+    k, a, reach = bar.stiffness, bar.ratio, bar.yield_force / bar.stiffness
+    ends = [rf.BranchEnd(name, s * reach, s > 0, internal=1.0) for name, s in (("up", 1.0), ("down", -1.0))]
+    found = {"elastic": rf.Branch(k, internal=-(1.0 - a) * k, ends=ends)}
+    for name, s in (("up", 1), ("down", -1)):
+        found[name] = rf.Branch(a * k, s * (1.0 - a) * k * reach, yields=s, offset=s * reach, turns_to="elastic")
+    return found
+
+
+def fuse_energy(bar, elongation, internal, share=1.0):
+    """What it stores: F²/2k, and a share of α (1 - α) k m²/2."""
+    k, a = bar.stiffness, bar.ratio
+    force = k * elongation - (1.0 - a) * k * internal
+    return force**2 / (2.0 * k) + share * 0.5 * a * (1.0 - a) * k * internal**2
+
+
 def random_shaking(seed, strength, seconds, dt):
     """Sines of random periods and phases under an envelope; begins and ends away from zero."""
     chance = np.random.default_rng(seed)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import pytest
 
 import rockflex as rf
-from builders import make_frame
+from builders import fuse_branches, fuse_energy, make_frame
 from drawing import drawn
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._branches import ElementTension, WithoutMemory
@@ -43,17 +43,10 @@ class SteelBar(rf.ElementLaw):
     rupture_elongation: float | None = None
 
     def branches(self):
-        k, a, reach = self.stiffness, self.ratio, self.yield_force / self.stiffness
-        ends = [rf.BranchEnd(name, s * reach, s > 0, internal=1.0) for name, s in (("up", 1.0), ("down", -1.0))]
-        found = {"elastic": rf.Branch(k, internal=-(1.0 - a) * k, ends=ends)}
-        for name, s in (("up", 1), ("down", -1)):
-            found[name] = rf.Branch(a * k, s * (1.0 - a) * k * reach, yields=s, offset=s * reach, turns_to="elastic")
-        return found
+        return fuse_branches(self)
 
     def stored_energy(self, elongation, internal):
-        k, a = self.stiffness, self.ratio
-        force = k * elongation - (1.0 - a) * k * internal
-        return force**2 / (2.0 * k) + 0.5 * a * (1.0 - a) * k * internal**2
+        return fuse_energy(self, elongation, internal)
 
     @property
     def dissipator_force(self):

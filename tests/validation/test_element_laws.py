@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import make_frame
+from builders import fuse_branches, fuse_energy, make_frame
 from twins.controlled import DOWN, ELASTIC, UP, Bar, ControlledTwin
 
 FRAME = make_frame(n_stories=3, stiffness_ratio=0.125, period=0.6, aspect_ratio=7.0, damping_ratio=0.03)
@@ -249,17 +249,10 @@ class Fuse(rf.ElementLaw):
     share: float = 1.0
 
     def branches(self):
-        k, a, reach = self.stiffness, self.ratio, self.yield_force / self.stiffness
-        ends = [rf.BranchEnd(name, s * reach, s > 0, internal=1.0) for name, s in (("up", 1.0), ("down", -1.0))]
-        found = {"elastic": rf.Branch(k, internal=-(1.0 - a) * k, ends=ends)}
-        for name, s in (("up", 1), ("down", -1)):
-            found[name] = rf.Branch(a * k, s * (1.0 - a) * k * reach, yields=s, offset=s * reach, turns_to="elastic")
-        return found
+        return fuse_branches(self)
 
     def stored_energy(self, elongation, internal):
-        k, a = self.stiffness, self.ratio
-        force = k * elongation - (1.0 - a) * k * internal
-        return force**2 / (2.0 * k) + self.share * 0.5 * a * (1.0 - a) * k * internal**2
+        return fuse_energy(self, elongation, internal, self.share)
 
 
 @pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C"])
