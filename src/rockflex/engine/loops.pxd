@@ -44,6 +44,7 @@ cdef extern from "march.h" nogil:
         const double *direct
         const double *magnitude
         const double *most
+        const double *border
         const double *one_sided
         Shaken shaken
     ctypedef struct Log:
@@ -91,11 +92,12 @@ cdef extern from "march.h" nogil:
         void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
         int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
-        void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
+        void (*move)(int rows, int terms, int width, const double *series, double t, double *out, double *sizes) noexcept nogil
         void (*spread)(int rows, int terms, int width, const double *series, double *out) noexcept nogil
         void (*reach)(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away) noexcept nogil
         void (*complete)(const Tables *p, Climb v, int terms, int width, double *series) noexcept nogil
         void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) noexcept nogil
+        void (*advance)(const Tables *p, const double *a, const double *y, double *next) noexcept nogil
         int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) noexcept nogil
         double (*attempt)(const Phase *p, const Step *s, Rates rates, int counted) noexcept nogil
         void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out) noexcept nogil
@@ -153,11 +155,12 @@ cdef class Phases:
     cdef int jump(self, int place, int outcome, bint magnitudes, double[::1] y, double[::1] workspace) noexcept nogil
     cdef int rests(self, int place, int event, double[::1] y, double a, double v) noexcept nogil
     cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
+    cdef void advance(self, int place, const double[::1] a, int i, double[::1] y) noexcept nogil
     cdef int expand(self, int place, double h, double a, double rise, (double, double) v, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
     cdef void reach(self, int place, (double, double) v, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
     cdef void complete(self, int place, (double, double) v, int terms, double[:, ::1] series) noexcept nogil
     cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
-    cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
+    cdef void move(self, double[:, ::1] series, int terms, double t, double[::1] out, double[::1] sizes) noexcept nogil
     cdef void magnitudes(self, int place, (double, double) v, int order, double[::1] before, double[::1] x, double[::1] out) noexcept nogil
     cdef bint nonlinear(self, int place) noexcept nogil
     cdef int leap(self, int place, int event, double[::1] y, double a, double a_v) noexcept nogil

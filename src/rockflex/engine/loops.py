@@ -38,10 +38,10 @@ class Peaks:
     def __init__(self, one_sided, states, room):
         outputs: cython.int = one_sided.shape[0]
         self.high_, self.when_ = np.zeros(outputs), np.zeros(outputs)
-        self.seen, self.candidates = np.zeros(MAX_ROWS + 8), np.zeros((room + 1, 2 + states + outputs))
+        self.seen, self.candidates = np.zeros(MAX_ROWS + 8), np.zeros((room + 1, 3 + states + outputs))
         self.log.high, self.log.when = cython.address(self.high_[0]), cython.address(self.when_[0])
         self.log.seen, self.log.candidates = cython.address(self.seen[0]), cython.address(self.candidates[0, 0])
-        self.log.room, self.log.width = room, 2 + states + outputs
+        self.log.room, self.log.width = room, 3 + states + outputs
         self.begin(one_sided)
 
     def __dealloc__(self):
@@ -244,7 +244,7 @@ class Phases:
         others: cython.pointer(cython.p_const_double) = cython.address(phase.tables.shaken.now)
         more: cython.Py_ssize_t = (which - phase.which) * phase.stride
         k: cython.int
-        for k in range(14):
+        for k in range(15):
             tables[k] += more
         phase.scale += more
         for k in range(2 * phase.events):
@@ -272,12 +272,12 @@ class Phases:
         tables: cython.pointer(cython.p_const_double) = cython.address(phase.tables.block)
         number: cython.const[cython.int][::1] = halvings
         k: cython.int
-        for k in range(14):  # from `block` to `most`, as in `march.h`
+        for k in range(15):  # from `block` to `border`, as in `march.h`
             tables[k] = first + offsets[k]
         phase.tables.one_sided = cython.address(self.one_sided[0])
-        phase.scale, phase.halvings_of = first + offsets[14], cython.address(number[0])
+        phase.scale, phase.halvings_of = first + offsets[15], cython.address(number[0])
         phase.which, phase.stride = 0, row.shape[0]
-        part: cython.int = 15
+        part: cython.int = 16
         for k in range(2 * phase.events):
             if jumps[k] is not None:
                 phase.jump[k] = first + offsets[part]
@@ -343,14 +343,15 @@ class Phases:
     def jump(self, place, outcome, magnitudes, y, workspace):
         """Multiply a state by the matrix of an outcome, or magnitudes by its magnitudes; whether there is one."""
         table: cython.p_const_double = self.phases[place].jump[outcome]
+        wide: cython.int = (self.n + 7) // 8 * 8
         i: cython.int
         if table == cython.NULL:
             return 0
         for i in range(self.n):
             workspace[i] = y[i]
         if magnitudes:
-            table += self.n * up8_(self.n)
-        LOOPS.product(self.n, up8_(self.n), table, cython.address(workspace[0]), cython.address(y[0]))
+            table += self.n * wide
+        LOOPS.product(self.n, wide, table, cython.address(workspace[0]), cython.address(y[0]))
         return 1
 
     def rests(self, place, event, y, a, v):
@@ -378,6 +379,11 @@ class Phases:
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
         return LOOPS.march(tables, place, cython.address(a[0]), vertical, i, last, cython.address(y[0]), log)
 
+    def advance(self, place, a, i, y):
+        """Advance over the sample i, without vertical acceleration and whatever happens."""
+        first: cython.p_double = cython.address(y[0])
+        LOOPS.advance(cython.address(self.phases[place].tables), cython.address(a[i]), first, first)
+
     def expand(self, place, h, a, rise, v, y, series, away):
         """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
         width: cython.int = series.shape[1]
@@ -403,9 +409,10 @@ class Phases:
         """Sum the series of the states at t."""
         LOOPS.evaluate(self.states, terms, series.shape[1], cython.address(series[0, 0]), t, cython.address(out[0]))
 
-    def amounts(self, series, terms, t, out):
-        """Sum the magnitudes of the terms of the states at t."""
-        LOOPS.amounts(self.states, terms, series.shape[1], cython.address(series[0, 0]), t, cython.address(out[0]))
+    def move(self, series, terms, t, out, sizes):
+        """The same, and sum the magnitudes of their terms."""
+        first: cython.p_double = cython.address(series[0, 0])
+        LOOPS.move(self.states, terms, series.shape[1], first, t, cython.address(out[0]), cython.address(sizes[0]))
 
     def magnitudes(self, place, v, order, before, x, out):
         """Multiply the magnitudes of the matrices by those of a term: of the states, of the accelerations and of 1."""
@@ -425,8 +432,8 @@ class Phases:
         phase.field, phase.floor = cython.cast(cython.p_void, field), cython.address(known[0])
         phase.moving, phase.counted = len(floor), counted
         self.fields.append((field, least))
-        if self.found.shape[1] < up8_(phase.events):
-            self.found = np.zeros((tableau.FOUND, up8_(phase.events)))
+        if self.found.shape[1] < up8(phase.events):
+            self.found = np.zeros((tableau.FOUND, up8(phase.events)))
 
     def nonlinear(self, place):
         """Whether a phase is not linear."""
@@ -517,14 +524,6 @@ def climb(v: tuple[cython.double, cython.double]) -> Climb:
     found: Climb
     found.start, found.rise = v[0], v[1]
     return found
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def up8_(count: cython.int) -> cython.int:
-    """The next multiple of 8."""
-    return (count + 7) // 8 * 8
 
 
 @cython.cfunc

@@ -9,7 +9,7 @@ from rockflex.engine.field import Field
 from rockflex.engine.shaken import ShakenTables
 from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, LinearPhase, NonlinearPhase, up8
-from rockflex.engine.tables import AHEAD, BLOCK, Tables, tables_of, tables_of_nonlinear_phase
+from rockflex.engine.tables import AHEAD, BLOCK, SLOTS, Tables, tables_of, tables_of_nonlinear_phase
 from rockflex.foundation.arrays import Array
 
 UNKNOWN, ENDS, ASKED = -1, -2, -3
@@ -32,7 +32,7 @@ class Peaks:
 
     def __init__(self, one_sided: Array, states: int, room: int) -> None:
         self.high, self.when, self.room = np.zeros(one_sided.size), np.zeros(one_sided.size), room
-        self.candidates, self.pauses = np.zeros((room + 1, 2 + states + one_sided.size)), 0
+        self.candidates, self.pauses = np.zeros((room + 1, 3 + states + one_sided.size)), 0
         self.begin(one_sided)
 
     def widen(self, rows: int) -> None:
@@ -229,7 +229,7 @@ class Phases(Steps):
         peaks.stopped = False
 
         def at_start(table: Array, y: Array, b: float) -> Array:
-            return table[:rows, : n + 1] @ np.array((*y, b)) + table[:rows, -1]
+            return table[: rows * SLOTS : SLOTS, : n + 1] @ np.array((*y, b)) + table[: rows * SLOTS : SLOTS, -1]
 
         self._raise(peaks, old[:m], i)
         first, ahead, final = i, np.zeros(0), x
@@ -247,7 +247,7 @@ class Phases(Steps):
                 ahead = p.block[k] @ np.array((*x, *ground, 1.0))
                 final = x + ahead[up8(AHEAD * rows) : up8(AHEAD * rows) + n]
             which = (i - first) % AHEAD
-            new = ahead[which * rows : (which + 1) * rows]
+            new = ahead[which : AHEAD * rows : AHEAD]
             after = x + p.step[k][:n] @ np.array((*x, a[i], a[i + 1], 1.0))
             slopes = [at_start(p.slope[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
             turns = np.maximum(4.0 * bend - np.abs(new - old), 0.0)
@@ -267,7 +267,7 @@ class Phases(Steps):
                 break
             above = np.maximum(self._counted(lowest[:m]), self._counted(highest[:m]))
             if (above > np.maximum(peaks.high[:m], self._counted(new[:m]))).any():
-                peaks.candidates[peaks.kept, : 2 + n + m] = (place, i, *x, *above)
+                peaks.candidates[peaks.kept, : 3 + n + m] = (place, i, 0, *x, *above)
                 peaks.kept += 1
             x, old, i = final if which == AHEAD - 1 else after, new, i + 1
             peaks.done += 1
@@ -324,9 +324,13 @@ class Phases(Steps):
         """Sum the series of the states at t."""
         out[: self.n] = np.polynomial.polynomial.polyval(t, series[:terms, : self.n])
 
-    def amounts(self, series: Array, terms: int, t: float, out: Array) -> None:
-        """Sum the magnitudes of the terms of the states at t."""
-        out[: self.n] = np.polynomial.polynomial.polyval(t, np.abs(series[:terms, : self.n]))
+    def move(self, series: Array, terms: int, t: float, out: Array, sizes: Array) -> None:
+        """The same, and sum the magnitudes of their terms."""
+        self.evaluate(series, terms, t, out)
+        self.evaluate(np.abs(series), terms, t, sizes)
+
+    def advance(self, place: int, a: Array, i: int, y: Array) -> None:
+        """Do nothing: the states of samples that may have higher peaks are those at their starts."""
 
     def magnitudes(self, place: int, v: Climb, order: int, before: Array, x: Array, out: Array) -> None:
         """Multiply the magnitudes of the matrices by those of a term: of the states, of the accelerations and of 1."""

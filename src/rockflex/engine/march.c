@@ -64,11 +64,13 @@ static inline __attribute__((always_inline)) void group(int registers, int colum
     for (int j = 0; j < registers; j++) put(out + j * LANES, (k < columns ? even[j] + t[j] * x[k] : even[j]) + odd[j]);
 }
 
-/* out = table · x; groups are of nearly the same size, as in `tables.packed`. */
+/* So many units of 8 rows are in the first group of those that are left; the last two groups are of nearly the same size. */
+static inline int units_of(int left) { return left <= UNITS ? left : left < 2 * UNITS ? (left + 1) / 2 : UNITS; }
+
+/* out = table · x. */
 static void product(int columns, int rows, const double *table, const double *x, double *out) {
-    int units = rows / 8, groups = (units + UNITS - 1) / UNITS;
-    for (int g = 0; g < groups; g++) {
-        int width = units * (g + 1) / groups - units * g / groups;
+    for (int left = rows / 8, width; left > 0; left -= width) {
+        width = units_of(left);
         switch (width) {
         case 1: group(1 * 8 / LANES, columns, table, x, out); break;
 #if UNITS > 1
@@ -87,22 +89,54 @@ static void product(int columns, int rows, const double *table, const double *x,
     }
 }
 
-/* to = factor · from; the largest magnitudes are kept. Whether one of them still changes by more than rounding. */
+
+/* to = factor · from, for at least `count` numbers; the largest magnitudes are kept. Whether one of them still changes by
+   more than rounding. */
 static inline int follow(int count, const double *from, double factor, double *most, double *to) {
     mask moves = {0};
-    int i = 0, some;
-    for (; i + LANES <= count; i += LANES) {
+    for (int i = 0; i < count; i += LANES) {
         vec next = at(from + i) * factor, top = larger(at(most + i), absolute(next));
         moves |= absolute(next) > top * 1e-17;
         put(to + i, next), put(most + i, top);
     }
-    some = any(moves);
-    for (; i < count; i++) {
-        to[i] = from[i] * factor;
-        if (fabs(to[i]) > most[i]) most[i] = fabs(to[i]);
-        some |= fabs(to[i]) > most[i] * 1e-17;
+    return any(moves);
+}
+
+/* Σ row[i] x[i], for a multiple of 8. */
+static inline double dot(int count, const double *row, const double *x) {
+    vec even = {0}, odd = {0};
+    for (int i = 0; i < count; i += 2 * LANES)
+        even += at(row + i) * at(x + i), odd += i + LANES < count ? at(row + i + LANES) * at(x + i + LANES) : (vec){0};
+    even += odd;
+    double total = even[0];
+    for (int i = 1; i < LANES; i++) total += even[i];
+    return total;
+}
+
+/* The rates of the states from `shift` on, and the conditions, of x with y, a, 1 and zeros up to a multiple of 8; or of
+   magnitudes, with the magnitudes of all factors. */
+static void rates_of(const Tables *p, int magnitudes, const double *x, double *z) {
+    const int n = p->n, s = p->shift, count = n - s + p->rows - p->outputs, q = *p->border, wide = up8(n + 2), size = up8(s);
+    const double *now = magnitudes ? p->magnitude : p->now, *terms = p->border + 8 + (magnitudes ? 5 * size : 0);
+    if (q == DENSE) {
+        product(n + 2, up8(count), now, x, z);
+        return;
     }
-    return some;
+    const int pushed = x[n] != 0.0 || x[n + 1] != 0.0;
+    double found[MAX_ROWS];
+    for (int i = 0; i < count - s; i++) {
+        const double *row = now + (size_t)i * wide;
+        const int sole = i < 7 ? (int)p->border[1 + i] : -1;
+        found[i] = sole < 0 ? dot(wide, row, x) : row[sole] * x[sole] + (pushed ? row[n] * x[n] + row[n + 1] * x[n + 1] : 0.0);
+    }
+    const double coupled = q == UNCOUPLED ? 0.0 : found[q];
+    for (int i = 0; i < s; i += LANES, terms += LANES) {
+        vec sum = at(terms) * at(x + i) + at(terms + size) * at(x + s + i) + at(terms + 2 * size) * coupled;
+        if (pushed) sum += at(terms + 3 * size) * x[n] + at(terms + 4 * size) * x[n + 1];
+        put(z + i, sum);
+    }
+    for (int i = 0; i < count - s; i++) z[s + i] = found[i];
+    put(z + count, (vec){0}); /* a vector may be read beyond */
 }
 
 static int acts(const Tables *p, Climb v) { return p->shaken.now && (v.start != 0.0 || v.rise != 0.0); }
@@ -125,25 +159,28 @@ static const double *shaken_term(const Tables *p, Climb v, int k, const double *
 static int expand(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width,
                   double *series) {
     const int shakes = acts(p, v), n = p->n, s = shakes ? p->shaken.shift : p->shift, rates = n - s;
-    const int first = up8(n + 2), conditions = p->rows - p->outputs, columns = shakes ? n + 3 + p->shaken.fed : n + 2;
-    const double *now = shakes ? p->shaken.now : p->now;
-    double z[WIDE], most[2][MAX_STATES], more[MORE], *x = series, *next;
+    const int first = up8(n + 2), conditions = p->rows - p->outputs;
+    double z[WIDE + 8], most[2][MAX_STATES + 8], more[MORE], *x = series, *next;
     memset(x, 0, sizeof *x * first);
     memcpy(x, y, sizeof *x * n);
     x[n] = a, x[n + 1] = 1.0;
-    for (int i = 0; i < s; i++) most[0][i] = fabs(x[i]);
-    for (int i = 0; i < rates; i++) most[1][i] = fabs(x[s + i]);
+    for (int i = 0; i < s; i += LANES) put(most[0] + i, absolute(at(x + i)));
+    for (int i = 0; i < rates; i += LANES) put(most[1] + i, absolute(at(x + s + i)));
     for (int k = 0, calm = 0; k < room; k++, x = next) {
-        product(columns, up8(rates + conditions), now, shakes ? shaken_term(p, v, k, x - width, x, more) : x, z);
+        if (shakes)
+            product(n + 3 + p->shaken.fed, up8(rates + conditions), p->shaken.now, shaken_term(p, v, k, x - width, x, more), z);
+        else
+            rates_of(p, 0, x, z);
         for (int j = 0; j < conditions; j++) x[first + j] = z[rates + j];
         if (k + 1 == room) break;
         next = x + width;
-        int moves = follow(s, x + s, h / (k + 1), most[0], next);
-        moves |= follow(rates, z, h / (k + 1), most[1], next + s);
-        next[n] = k == 0 ? rise : 0.0;
-        for (int i = n + 1; i < first; i++) next[i] = 0.0;
+        const double factor = h / (k + 1);
+        int moves = follow(s, x + s, factor, most[0], next);
+        moves |= follow(rates, z, factor, most[1], next + s);
+        for (int i = n; i < first; i++) next[i] = 0.0;
+        if (k == 0) next[n] = rise;
         calm = k > 1 && !moves ? calm + 1 : 0;
-        if (calm == 2) return k + 1;
+        if (calm == 2) return k;
     }
     return 0;
 }
@@ -157,12 +194,15 @@ static void evaluate(int rows, int terms, int width, const double *series, doubl
     }
 }
 
-/* The same of their coefficients' magnitudes. */
-static void amounts(int rows, int terms, int width, const double *series, double t, double *out) {
+/* The same, and of their coefficients' magnitudes. */
+static void move(int rows, int terms, int width, const double *series, double t, double *out, double *sizes) {
     for (int j = 0; j < rows; j += LANES) {
-        vec sum = {0};
-        for (int k = terms - 1; k >= 0; k--) sum = sum * t + absolute(at(series + (size_t)k * width + j));
-        put(out + j, sum);
+        vec sum = {0}, size = {0};
+        for (int k = terms - 1; k >= 0; k--) {
+            const vec here = at(series + (size_t)k * width + j);
+            sum = sum * t + here, size = size * t + absolute(here);
+        }
+        put(out + j, sum), put(sizes + j, size);
     }
 }
 
@@ -208,65 +248,76 @@ static void complete(const Tables *p, Climb v, int terms, int width, double *ser
 
 /* The sums of the magnitudes that rates and conditions of an order are summed from, from those of the term x. */
 static void magnitudes(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) {
-    const int shakes = acts(p, v), rows = up8(p->n - (shakes ? p->shaken.shift : p->shift) + p->rows - p->outputs);
     double more[MORE];
-    if (shakes) {
-        Climb most = {fabs(v.start), fabs(v.rise)};
+    if (acts(p, v)) {
+        const Climb most = {fabs(v.start), fabs(v.rise)};
+        const int rows = up8(p->n - p->shaken.shift + p->rows - p->outputs);
         product(p->n + 3 + p->shaken.fed, rows, p->shaken.magnitude, shaken_term(p, most, order, before, x, more), out);
     } else {
-        product(p->n + 2, rows, p->magnitude, x, out);
+        rates_of(p, 1, x, out);
     }
 }
 
-typedef struct { /* what is known of every row, once for each sample of a product, one sample after another */
-    int flat;      /* of them, to a multiple of 8 */
-    unsigned char *sample;      /* the sample of each */
-    mask *flip, *keep;          /* a value counts as (value ^ flip) & keep */
-    double *limit;              /* the peak, or 0, which a condition must not pass */
-    double *bend4, *over, *cap; /* in this block: 4 b and 1/16 b with b = h²/8 |r''|, and the cap */
-    double *quiet;              /* what counts may be so high at the ends of a sample, whatever is between */
+typedef double quad __attribute__((vector_size(8 * AHEAD), aligned(8))); /* of a row, at the samples of a product */
+typedef long long quadmask __attribute__((vector_size(8 * AHEAD), aligned(8)));
+
+static inline quad quad_at(const double *x) { return *(const quad *)x; }
+static inline void quad_put(double *x, quad value) { *(quad *)x = value; }
+static inline quad quad_all(double x) { return x + (quad){0}; }
+static inline quad quad_chosen(quadmask m, quad a, quad b) { return (quad)((m & (quadmask)a) | (~m & (quadmask)b)); }
+static inline quad quad_larger(quad a, quad b) { return quad_chosen(a > b, a, b); }
+static inline quad quad_absolute(quad a) { return (quad)((quadmask)a & 0x7fffffffffffffffLL); }
+
+/* The samples in which a comparison is true, a bit for each. */
+static inline unsigned bits(quadmask m) {
+#if defined(__AVX2__)
+    return _mm256_movemask_pd((__m256d)m);
+#elif defined(__SSE2__)
+    union {
+        quadmask all;
+        __m128d half[2];
+    } x = {m};
+    return _mm_movemask_pd(x.half[0]) | _mm_movemask_pd(x.half[1]) << 2;
+#else
+    return (m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8);
+#endif
+}
+
+typedef struct { /* of every row; arrays of quads have it once for each sample of a product */
+    double *low, *high;         /* a condition must not pass 0, nor an output unnoticed its peak */
+    double *bend, *cap, *sway, *jolt; /* in this block: h²/8 |r''|, and as of Tables; `jolt` of conditions alone */
+    double *calm_low, *calm_high;     /* quads: between these at the ends of a sample, a row is so within it */
+    int fine;                   /* whether `sway` and `jolt` are known */
+    int shakes;                 /* whether a_v acts: the bounds of `shaken` hold */
+    double *moves;              /* what bounds are products with */
 } Watch;
 
-typedef struct { /* bounds that hold for the samples of a block */
-    int fine;    /* whether `sway` and `jolt` are known */
-    int shakes;  /* whether a_v acts: the bounds of `shaken` hold */
-    double *moves, *bend, *sway, *jolt;
-} Block;
+typedef struct { /* what is found in the samples of a product; samples have a bit each */
+    unsigned at_end, within, fails; /* in which a peak is at the end, may be within, and in which a condition may fail */
+    int count, *rows;       /* rows that ask */
+    double *top;            /* quads: how high each of these may get, if it is an output */
+    double *slopes, *ends;  /* where a_v acts, of all rows at the ends of each sample, without the parts of a' and a_v' */
+} Asking;
 
-enum { LINE = 8 }; /* doubles in a line of the cache */
+enum { LINE = 8, MOVES = 2 * MAX_STATES + 4 + 5 * MAX_FED }; /* LINE: doubles in a line of the cache */
+
+typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
+
+typedef struct { /* room for one march; on the stack of a thread it might be too large */
+    States states;
+    double arena[];
+} Workspace;
+
+/* The memory of what `march` takes, at most, in phases of so many rows. */
+static size_t workspace(int rows) {
+    return sizeof(Workspace) + (7 * up8(AHEAD * rows) + 8 * up8(rows) + 2 * MAX_STATES + MOVES + 24 * LINE) * sizeof(double);
+}
 
 /* Some of the room. Arrays lie close together, and do not begin at the same place of a page, so that all fit in the cache. */
 static double *taken(double **from, int count) {
     double *found = *from;
     *from += up8(count) + LINE;
     return found;
-}
-
-static void begin_watch(const Tables *p, const Log *log, Watch *w, double **arena) {
-    const int m = p->outputs, rows = p->rows, flat = up8(AHEAD * rows);
-    w->flat = flat, w->sample = (unsigned char *)taken(arena, flat / 8);
-    w->flip = (mask *)taken(arena, flat), w->keep = (mask *)taken(arena, flat), w->limit = taken(arena, flat);
-    w->quiet = taken(arena, flat), w->bend4 = taken(arena, flat), w->over = taken(arena, flat), w->cap = taken(arena, flat);
-    long long *flip = (long long *)w->flip, *keep = (long long *)w->keep;
-    for (int k = 0, f = 0; k < AHEAD; k++)
-        for (int j = 0; j < rows; j++, f++) {
-            flip[f] = j < m ? 0 : (long long)(1ULL << 63);
-            keep[f] = j < m && !(p->one_sided[j] > 0.0) ? 0x7fffffffffffffffLL : -1;
-            w->limit[f] = j < m ? log->high[j] : -1e-300, w->sample[f] = k;
-        }
-    for (int f = AHEAD * rows; f < flat; f++) {
-        flip[f] = keep[f] = 0, w->sample[f] = 0;
-        w->limit[f] = INFINITY, w->bend4[f] = w->over[f] = w->cap[f] = 0.0;
-    }
-}
-
-static inline double counted(const Watch *w, int f, double value) {
-    union {
-        double value;
-        long long bits;
-    } x = {value};
-    x.bits = (x.bits ^ ((const long long *)w->flip)[f]) & ((const long long *)w->keep)[f];
-    return x.value;
 }
 
 /* How much an input varies in some samples, and its largest slope. */
@@ -280,95 +331,64 @@ static void vary(const double *a, int samples, double h, double *found) {
     found[0] = varies, found[1] = steepest / h;
 }
 
-typedef struct { /* of rows, one sample after another */
-    double *lowest, *highest, *slopes, *centres, *sway;
-    double *ends; /* slopes at the ends of the samples; where a_v acts they are not those at the start of the next one */
-} Bounds;
-
-typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
-
 #include "shaken.h"
 
+/* After a change of limits or bounds. */
+static void set_calm(int rows, Watch *w) {
+    for (int j = 0; j < rows; j++) {
+        const double margin = 1.00000001 * w->bend[j] + w->cap[j];
+        quad_put(w->calm_low + AHEAD * j, quad_all(w->low[j] + margin));
+        quad_put(w->calm_high + AHEAD * j, quad_all(w->high[j] - margin));
+    }
+}
+
+/* Take the peaks as limits of the outputs. */
+static void set_limits(const Tables *p, const Log *log, Watch *w) {
+    for (int j = 0; j < p->outputs; j++)
+        w->high[j] = log->high[j], w->low[j] = p->one_sided[j] > 0.0 ? -INFINITY : -log->high[j];
+}
+
 /* Returns the number of samples that the bounds hold for: BLOCK, or AHEAD. */
-static int begin_block(const Tables *p, const double *a, const double *v, int samples, const double *y, Block *b, Watch *w) {
+static int begin_block(const Tables *p, const double *a, const double *v, int samples, const double *y, Watch *w) {
     const int n = p->n, rows = p->rows, parts = p->parts;
     double x[MORE], found[2 * MAX_STATES], more[MORE];
     const Climb climb = {v ? v[0] : 0.0, 0.0};
-    b->shakes = v && marches_shaken(p) && any_rise(v, samples);
+    w->shakes = v && marches_shaken(p) && any_rise(v, samples);
     memcpy(x, y, sizeof *x * n);
     x[n] = a[0], x[n + 1] = 1.0;
-    if (b->shakes)
+    if (w->shakes)
         product(n + 3 + p->shaken.fed, up8(parts), p->shaken.moves, shaken_term(p, climb, 0, 0, x, more), found);
     else
         product(n + 2, up8(parts), p->moves, x, found);
-    for (int k = 0; k < n; k++) b->moves[k] = fabs(found[k]);
-    for (int k = n; k < parts; k++) b->moves[k + 2] = fabs(found[k]);
-    vary(a, samples, p->h, b->moves + n);
+    for (int k = 0; k < n; k++) w->moves[k] = fabs(found[k]);
+    for (int k = n; k < parts; k++) w->moves[k + 2] = fabs(found[k]);
+    vary(a, samples, p->h, w->moves + n);
     int length = BLOCK;
-    if (b->shakes) {
-        if (!vary_shaken(p, v, samples, y, b->moves)) {
+    if (w->shakes) {
+        if (!vary_shaken(p, v, samples, y, w->moves)) {
             length = AHEAD, samples = samples < AHEAD ? samples : AHEAD;
-            vary(a, samples, p->h, b->moves + n);
-            vary_shaken(p, v, samples, y, b->moves);
+            vary(a, samples, p->h, w->moves + n);
+            vary_shaken(p, v, samples, y, w->moves);
         }
-        product(shaken_columns(p), up8(rows), p->shaken.bend, b->moves, b->bend);
+        product(shaken_columns(p), up8(rows), p->shaken.bend, w->moves, w->bend);
     } else {
-        product(parts + 2, up8(rows), p->bend, b->moves, b->bend);
+        product(parts + 2, up8(rows), p->bend, w->moves, w->bend);
     }
-    memset(w->cap, 0, sizeof *w->cap * rows);
-    if (parts > n) product(parts + 2, up8(rows), p->cap, b->moves, w->cap);
-    b->fine = 0;
-    for (int j = 0; j < rows; j++) {
-        const double bend = b->bend[j] < 1e300 ? b->bend[j] : 1e300; /* products of vague bounds may not be numbers */
-        w->bend4[j] = 4.0 * bend, w->over[j] = 1.0 / (16.0 * bend + 1e-305);
-    }
-    for (int k = 1; k < AHEAD; k++) {
-        memcpy(w->bend4 + k * rows, w->bend4, sizeof *w->bend4 * rows);
-        memcpy(w->over + k * rows, w->over, sizeof *w->over * rows);
-        memcpy(w->cap + k * rows, w->cap, sizeof *w->cap * rows);
-    }
+    for (int j = 0; j < rows; j += LANES) /* products of vague bounds may not be numbers */
+        put(w->bend + j, chosen(at(w->bend + j) < all(1e300), at(w->bend + j), all(1e300)));
+    if (parts > n) product(parts + 2, up8(rows), p->cap, w->moves, w->cap);
+    w->fine = 0;
+    set_calm(rows, w);
     return length;
 }
 
-/* How far a row may get beyond both ends of a sample, between which it changes: h²/8 |r''| is at most `bend`. A parabola
-   of that curvature gets furthest; where the change is too large for one, the row is monotonic. */
-static inline vec excess(vec change, vec bend4, vec over) {
-    vec turns = larger(bend4 - absolute(change), all(0.0));
-    return turns * (turns * over); /* squares of forces in any unit might overflow, or vanish */
+/* Whether all rows are so far from their limits that nothing can happen between samples such as these. */
+static int calm(int rows, const double *values, const Watch *w) {
+    quadmask some = {0};
+    for (int f = 0; f < AHEAD * rows; f += AHEAD)
+        some |= (quad_at(values + f) > quad_at(w->calm_high + f)) | (quad_at(values + f) < quad_at(w->calm_low + f));
+    return !bits(some);
 }
-
-/* What counts of some rows. */
-static inline vec counts(const Watch *w, int f, vec row) {
-    return (vec)(((mask)row ^ w->flip[f / LANES]) & w->keep[f / LANES]);
-}
-
-/* After a change of limits or bounds. */
-static void begin_quiet(Watch *w) {
-    for (int f = 0; f < w->flat; f += LANES)
-        put(w->quiet + f, at(w->limit + f) - 0.25000001 * at(w->bend4 + f) - at(w->cap + f));
-}
-
-/* Whether some rows are too high at the ends of samples for them to be passed over. */
-static int quiet(const Watch *w, const double *rows) {
-    mask some = {0};
-    for (int f = 0; f < w->flat; f += LANES) some |= counts(w, f, at(rows + f)) > at(w->quiet + f);
-    return !any(some);
-}
-
-/* Whether any sample of a product asks for a closer look. */
-static int asks(const Watch *w, const double *before, const double *after) {
-    mask some = {0};
-    for (int f = 0; f < w->flat; f += LANES) {
-        vec r0 = at(before + f), r1 = at(after + f);
-        vec beyond = excess(r1 - r0, at(w->bend4 + f), at(w->over + f)) + at(w->cap + f);
-        some |= larger(counts(w, f, r0), counts(w, f, r1)) + beyond > at(w->limit + f);
-    }
-    return any(some);
-}
-
-typedef struct { /* samples of a product, a bit for each */
-    unsigned at_end, within, fails; /* in which a peak is at the end, may be within, and in which a condition may fail */
-} Asking;
 
 /* A lower bound of a row r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1, which `away` may take off. */
 static double lowest_of(double r0, double change, double first, double last, double away) {
@@ -391,57 +411,77 @@ static double lowest_of(double r0, double change, double first, double last, dou
     return least - away;
 }
 
-/* Whether the condition of a row may fail: it stays near the cubic through both ends of a sample, and their slopes. */
-static int may_fail(const Tables *p, const double *ground, const double *rise, int sample, double r0, double r1, double s0, double s1,
-                    int row, const Block *b) {
-    double change = r1 - r0, chord = change - p->direct[row] * (ground[sample + 1] - ground[sample]);
-    if (rise) chord -= p->shaken.direct[row] * (rise[sample + 1] - rise[sample]);
-    return !(lowest_of(r0, change, p->h * s0 - chord, p->h * s1 - chord, b->jolt[row - p->outputs]) > 0.0);
+/* The samples in which the condition of a row may fail, of those asked for: it stays near the cubic through both ends of a
+   sample, and their slopes. */
+static unsigned failing(const Tables *p, const double *ground, const double *rise, int row, quad r0, quad r1, quad s0, quad s1,
+                        unsigned asked, double jolt) {
+    for (int k = 0; k < AHEAD; k++) {
+        double change = r1[k] - r0[k], chord = change - p->direct[row] * (ground[k + 1] - ground[k]);
+        if (!(asked >> k & 1)) continue;
+        if (rise) chord -= p->shaken.direct[row] * (rise[k + 1] - rise[k]);
+        if (lowest_of(r0[k], change, p->h * s0[k] - chord, p->h * s1[k] - chord, jolt) > 0.0) asked &= ~(1u << k);
+    }
+    return asked;
 }
 
-/* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
-   near its chord by the change of its slope and its third derivative, or near what fast modes swing about. The slopes are
-   known where a_v acts, as `rise`. */
-static Asking asking(const Tables *p, const double *ground, const double *rise, const double *x, const double *before,
-                     const double *after, Block *b, const Watch *w, Bounds *bounds) {
-    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
-    const int parted = !b->shakes && p->parts > p->n; /* otherwise the amplitudes of fast modes are not known */
-    double *slopes = bounds->slopes, *centres = bounds->centres, *sway = bounds->sway;
-    const double *ends = rise ? bounds->ends : slopes + rows;
-    Asking found = {0};
-    if (!b->fine && b->shakes) {
-        product(shaken_columns(p), up8(rows), p->shaken.sway, b->moves, b->sway);
-        product(shaken_columns(p), up8(rows - p->outputs), p->shaken.jolt, b->moves, b->jolt);
-    } else if (!b->fine) {
-        product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
-        product(p->parts + 2, up8(rows - p->outputs), p->jolt, b->moves, b->jolt);
-    }
-    b->fine = 1;
-    for (int k = 0; k < AHEAD; k++) memcpy(sway + k * rows, b->sway, sizeof *sway * rows);
-    for (int f = AHEAD * rows; f < w->flat; f++) sway[f] = 0.0;
-    if (!rise) product(columns, whole, p->slope, x, slopes);
-    if (parted) product(columns, whole, p->centre, x, centres);
-    for (int f = 0; f < w->flat; f += LANES) {
-        vec r0 = at(before + f), r1 = at(after + f), s0 = at(slopes + f), s1 = at(ends + f);
-        vec beyond = excess(r1 - r0, at(w->bend4 + f), at(w->over + f)) + at(w->cap + f);
-        vec closer = absolute(s1 - s0) * (p->h / 8.0) + at(sway + f);
-        beyond = chosen(closer < beyond, closer, beyond);
-        vec low = -larger(-r0, -r1) - beyond, high = larger(r0, r1) + beyond;
-        if (parted) {
-            vec c0 = at(centres + f), c1 = at(centres + rows + f), away = 0.5 * at(w->cap + f) + 0.25 * at(w->bend4 + f);
-            low = larger(low, -larger(-c0, -c1) - away), high = -larger(-high, -larger(c0, c1) - away);
+/* The slopes of a row, or what it swings about, at both ends of the samples, of which the table has eight rows each. */
+static void ends_of(const Tables *p, const double *table, int row, const double *x, quad *start, quad *end) {
+    double found[8];
+    product(p->n + AHEAD + 2, 8, table + (size_t)row * 8 * (p->n + AHEAD + 2), x, found);
+    *start = quad_at(found), *end = quad_at(found + 1);
+}
+
+/* Look closer at the rows that are not calm in the samples of a product. Between two samples a row gets beyond its larger
+   end by at most b (1 - |Δr|/4b)², as a parabola with b = h²/8 |r''|; where |Δr| is larger than 4b it is monotonic. It also
+   stays near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
+static void examine(const Tables *p, const double *ground, const double *rise, int samples, const double *x, const double *before,
+                    const double *after, Watch *w, Asking *found) {
+    const int parted = !w->shakes && p->parts > p->n; /* otherwise the amplitudes of fast modes are not known */
+    unsigned left = (1u << samples) - 1; /* samples before the first in which a condition may fail */
+    found->at_end = found->within = found->fails = found->count = 0;
+    for (int k = 0; k < p->rows && left; k++) {
+        const int j = (k + p->outputs) % p->rows, f = AHEAD * j; /* conditions first */
+        const quad r1 = quad_at(after + f), calm_low = quad_at(w->calm_low + f), calm_high = quad_at(w->calm_high + f);
+        quad r0 = quad_at(after + f - 1);
+        r0[0] = before[f + AHEAD - 1];
+        if (!bits((r1 > calm_high) | (r1 < calm_low) | (r0 > calm_high) | (r0 < calm_low))) continue;
+        const quad bend = quad_all(w->bend[j]), cap = quad_all(w->cap[j]), least = quad_all(w->low[j]), most = quad_all(w->high[j]);
+        const quad turns = quad_larger(4.0 * bend - quad_absolute(r1 - r0), quad_all(0.0));
+        quad beyond = turns * (turns / (16.0 * bend + 1e-305)) + cap; /* squares of forces might overflow, or vanish */
+        quad low = -quad_larger(-r0, -r1), high = quad_larger(r0, r1), s0 = {0}, s1 = {0};
+        if (!(bits((high + beyond > most) | (low - beyond < least)) & left)) continue;
+        if (!w->fine && w->shakes) {
+            product(shaken_columns(p), up8(p->rows), p->shaken.sway, w->moves, w->sway);
+            product(shaken_columns(p), up8(p->rows - p->outputs), p->shaken.jolt, w->moves, w->jolt);
+        } else if (!w->fine) {
+            product(p->parts + 2, up8(p->rows), p->sway, w->moves, w->sway);
+            product(p->parts + 2, up8(p->rows - p->outputs), p->jolt, w->moves, w->jolt);
         }
-        put(bounds->lowest + f, low), put(bounds->highest + f, high);
-        vec limit = at(w->limit + f), end = counts(w, f, r1), top = larger(counts(w, f, low), counts(w, f, high));
-        mask above = top > limit, within = top > larger(limit, end), condition = w->flip[f / LANES] < 0;
-        if (any(above))
-            for (int k = 0; k < LANES; k++) {
-                if (above[k] && !(condition[k] && !may_fail(p, ground, rise, w->sample[f + k], r0[k], r1[k], s0[k], s1[k],
-                                                            (f + k) % rows, b)))
-                    *(condition[k] ? &found.fails : within[k] ? &found.within : &found.at_end) |= 1u << w->sample[f + k];
-            }
+        w->fine = 1;
+        if (rise)
+            for (int i = 0; i < AHEAD; i++) s0[i] = found->slopes[i * p->rows + j], s1[i] = found->ends[i * p->rows + j];
+        else
+            ends_of(p, p->slope, j, x, &s0, &s1);
+        const quad closer = quad_absolute(s1 - s0) * (p->h / 8.0) + w->sway[j];
+        beyond = quad_chosen(closer < beyond, closer, beyond), low -= beyond, high += beyond;
+        if (parted) {
+            quad c0, c1, away = 0.5 * cap + bend;
+            ends_of(p, p->centre, j, x, &c0, &c1);
+            low = quad_larger(low, -quad_larger(-c0, -c1) - away), high = -quad_larger(-high, -quad_larger(c0, c1) - away);
+        }
+        const unsigned above = bits((high > most) | (low < least)) & left;
+        if (!above) continue;
+        if (j >= p->outputs) {
+            const unsigned fails = failing(p, ground, rise, j, r0, r1, s0, s1, above, w->jolt[j - p->outputs]);
+            if (fails) found->fails = fails & -fails, left &= found->fails - 1;
+            continue;
+        }
+        const int one = p->one_sided[j] > 0.0;
+        const quad top = one ? high : quad_larger(high, -low), end = one ? r1 : quad_absolute(r1);
+        const unsigned within = bits(top > quad_larger(most, end)) & above;
+        found->within |= within, found->at_end |= above & ~within;
+        quad_put(found->top + AHEAD * found->count, top), found->rows[found->count++] = j;
     }
-    return found;
 }
 
 /* The state a sample later. */
@@ -454,60 +494,42 @@ static void advance(const Tables *p, const double *a, const double *y, double *n
     for (int k = 0; k < n; k++) next[k] = z[k] + y[k];
 }
 
-/* Raise the peaks to the outputs at a sample. */
-static inline void raise_peaks(const Tables *p, const double *rows, double sample, const Watch *w, Log *log) {
-    for (int j = 0; j < p->outputs; j += LANES) {
-        vec value = counts(w, j, at(rows + j)), high = at(log->high + j);
-        put(log->when + j, chosen(value > high, all(log->passed + sample), at(log->when + j)));
-        put(log->high + j, larger(high, value));
-    }
+/* Raise the peak of an output to its value at a sample. */
+static inline void raise_peak(const Tables *p, int j, double value, double sample, Log *log) {
+    value = p->one_sided[j] > 0.0 ? value : fabs(value);
+    if (value > log->high[j]) log->high[j] = value, log->when[j] = log->passed + sample;
 }
 
-enum { MOVES = 2 * MAX_STATES + 4 + 5 * MAX_FED };
-
-typedef struct { /* room for one march; on the stack of a thread it might be too large */
-    States states;
-    double arena[];
-} Workspace;
-
-/* The memory of what `march` takes, at most, in phases of so many rows. */
-static size_t workspace(int rows) {
-    return sizeof(Workspace) + (15 * up8(AHEAD * rows) + 8 * up8(rows) + MAX_STATES + MOVES + 32 * LINE) * sizeof(double);
-}
-
-/* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
-   first in which a condition may fail. */
-static int inspect(const Tables *p, int phase, const double *a, int i, int samples, Asking asking, const double *rows,
-                   const Bounds *bounds, States y, int *known, Watch *w, Log *log) {
-    const int n = p->n, m = p->outputs, count = p->rows;
-    const double *lowest = bounds->lowest, *highest = bounds->highest;
+/* Log what is found in the samples of a product from sample i on, of which `known` states are known, and raise the peaks.
+   Returns how many samples there are before the first in which a condition may fail. */
+static int inspect(const Tables *p, int phase, int i, int samples, const Asking *asking, const double *after, int known, States y,
+                   Watch *w, Log *log) {
     int k = 0;
-    for (; k < samples; k++, rows += count, lowest += count, highest += count) {
-        const double *r1 = rows + count;
-        if (!((asking.at_end | asking.within | asking.fails) >> k & 1)) continue;
-        double *row = log->candidates + (size_t)log->count * log->width, *above = row + 2 + n;
-        int fails = asking.fails >> k & 1, higher = 0;
-        if (asking.within >> k & 1)
-            for (int j = 0; j < m; j++) {
-                double end = counted(w, j, r1[j]), high = log->high[j], low = counted(w, j, lowest[j]);
-                above[j] = counted(w, j, highest[j]);
-                above[j] = low > above[j] ? low : above[j];
-                higher |= above[j] > (high > end ? high : end);
-            }
-        if (fails || higher)
-            for (; *known < k; ++*known) advance(p, a + *known, y[*known], y[*known + 1]);
-        if (fails) {
+    for (; k < samples; k++) {
+        double *row = log->candidates + (size_t)log->count * log->width, *above = row + 3 + p->n;
+        if (asking->fails >> k & 1) {
             log->looks = 1;
             break;
         }
-        if (higher) {
-            row[0] = phase, row[1] = i + k;
-            memcpy(row + 2, y[k], sizeof **y * n);
+        if (!((asking->at_end | asking->within) >> k & 1)) continue;
+        int higher = 0;
+        for (int q = 0; q < asking->count && asking->within >> k & 1; q++) {
+            const int j = asking->rows[q];
+            const double end = after[AHEAD * j + k], top = asking->top[AHEAD * q + k];
+            higher |= top > log->high[j] && top > (p->one_sided[j] > 0.0 ? end : fabs(end));
+        }
+        if (higher) { /* the state there is not needed if the value turns out not to be a peak */
+            const int from = k < known ? k : known;
+            row[0] = phase, row[1] = i + k, row[2] = k - from;
+            memcpy(row + 3, y[from], sizeof **y * p->n);
+            for (int j = 0; j < p->outputs; j++) above[j] = -INFINITY;
+            for (int q = 0; q < asking->count; q++) above[asking->rows[q]] = asking->top[AHEAD * q + k];
             log->count++;
         }
-        raise_peaks(p, r1, i + k + 1, w, log);
+        for (int q = 0; q < asking->count; q++)
+            raise_peak(p, asking->rows[q], after[AHEAD * asking->rows[q] + k], i + k + 1, log);
     }
-    for (int j = 0; j < AHEAD; j++) memcpy(w->limit + j * count, log->high, sizeof *log->high * m);
+    set_limits(p, log, w), set_calm(p->rows, w);
     return k;
 }
 
@@ -517,38 +539,39 @@ static int inspect(const Tables *p, int phase, const double *a, int i, int sampl
 static int march(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) {
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
-    double *arena = room->arena;
-    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1], lifted[AHEAD + 1];
-    double *after = taken(&arena, up8(rows) + flat + states) + up8(rows), *before = after - rows, *change = after + flat;
-    Watch seen = {0}, *watch = &seen;
-    Block block = {0};
-    Bounds bounds;
-    double(*at_samples)[MAX_STATES] = room->states;
-    block.moves = taken(&arena, MOVES), block.bend = taken(&arena, rows), block.sway = taken(&arena, rows);
-    block.jolt = taken(&arena, rows);
-    bounds.lowest = taken(&arena, flat), bounds.highest = taken(&arena, flat), bounds.sway = taken(&arena, flat);
-    bounds.slopes = taken(&arena, flat + up8(rows)), bounds.centres = taken(&arena, flat + up8(rows));
-    bounds.ends = taken(&arena, flat + up8(rows));
-    begin_watch(p, log, watch, &arena);
+    double(*at_samples)[MAX_STATES] = room->states, *arena = room->arena;
+    double x[MAX_STATES + 16], padded[AHEAD + 1], lifted[AHEAD + 1];
+    double *after = taken(&arena, flat + states), *before = taken(&arena, flat + states);
+    Watch watch = {.fine = 0}, *w = &watch;
+    Asking asking = {.count = 0};
+    double **of_rows[] = {&w->low, &w->high, &w->bend, &w->cap, &w->sway, &w->jolt};
+    double **of_samples[] = {&w->calm_low, &w->calm_high, &asking.top, &asking.slopes, &asking.ends};
+    for (size_t k = 0; k < sizeof of_rows / sizeof *of_rows; k++) *of_rows[k] = taken(&arena, rows);
+    for (size_t k = 0; k < sizeof of_samples / sizeof *of_samples; k++) *of_samples[k] = taken(&arena, AHEAD * rows);
+    w->moves = taken(&arena, MOVES), asking.rows = (int *)taken(&arena, rows);
     memcpy(x, y, sizeof *x * n);
-    if (log->resumes) {
-        memcpy(before, log->seen, sizeof *x * rows);
-    } else {
+    if (!log->resumes) {
+        memset(x + n, 0, 10 * sizeof *x);
         x[n] = a[i], x[n + 1] = 1.0;
-        rows_at(p, x, v ? v[i] : 0.0, after, before);
-        raise_peaks(p, before, i, watch, log);
+        rows_at(p, x, v ? v[i] : 0.0, after, log->seen);
+        for (int j = 0; j < p->outputs; j++) raise_peak(p, j, log->seen[j], i, log);
+    }
+    set_limits(p, log, w);
+    for (int j = 0; j < rows; j++) {
+        quad_put(before + AHEAD * j, quad_all(log->seen[j]));
+        w->cap[j] = 0.0;
+        if (j >= p->outputs) w->low[j] = 1e-300, w->high[j] = INFINITY;
     }
     log->looks = log->resumes = 0;
-    for (int left = 0, calm = 0, fresh = 0; i < last && !log->looks; left -= AHEAD) {
+    for (int left = 0, was_calm = 0; i < last && !log->looks; left -= AHEAD) {
         if (left == 0) {
             if (log->count + BLOCK > log->room || log->work >= log->pause) {
-                memcpy(log->seen, before, sizeof *x * rows);
+                for (int j = 0; j < rows; j++) log->seen[j] = before[AHEAD * j + AHEAD - 1];
                 log->resumes = 1;
                 break;
             }
-            left = begin_block(p, a + i, v ? v + i : 0, last - i < BLOCK ? last - i : BLOCK, x, &block, watch);
-            begin_quiet(watch);
-            fresh = 1;
+            left = begin_block(p, a + i, v ? v + i : 0, last - i < BLOCK ? last - i : BLOCK, x, w);
+            was_calm = calm(rows, before, w);
         }
         int samples = last - i < AHEAD ? last - i : AHEAD, known = 0; /* samples after which the state is known */
         const double *ground = a + i, *rise = v && p->shaken.now && any_rise(v + i, samples) ? v + i : 0;
@@ -566,32 +589,33 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
             product(n + AHEAD + 2, flat + states, p->block, x, after);
         }
         const int left_over = rise && known < samples; /* to a power series */
-        int passed = samples;
-        int was_calm = fresh ? quiet(watch, before) : calm;
-        fresh = 0;
-        calm = quiet(watch, after);
-        int look = left_over || (!(was_calm && calm) && asks(watch, before, after));
-        if (log->states || samples < AHEAD || look) {
-            memcpy(at_samples[0], x, sizeof *x * n);
-            if (look) {
-                if (rise) slopes_shaken(p, ground, rise, known, at_samples, &bounds);
-                Asking which = asking(p, ground, rise, x, before, after, &block, watch, &bounds);
-                if (left_over) which.fails |= 1u << known;
-                passed = inspect(p, phase, ground, i, samples, which, before, &bounds, at_samples, &known, watch, log);
-                begin_quiet(watch);
+        const int is_calm = calm(rows, after, w);
+        int passed = samples, steps = samples < AHEAD || rise || log->states;
+        if (left_over || !(was_calm && is_calm)) {
+            if (rise) slopes_shaken(p, ground, rise, known, at_samples, &asking);
+            examine(p, ground, rise, samples, x, before, after, w, &asking);
+            if (left_over) asking.fails |= 1u << known;
+            was_calm = is_calm;
+            if (asking.at_end | asking.within | asking.fails) {
+                memcpy(at_samples[0], x, sizeof *x * n);
+                passed = inspect(p, phase, i, samples, &asking, after, known, at_samples, w, log);
+                steps |= log->looks;
+                was_calm = calm(rows, after, w);
             }
-            if (log->states || passed < AHEAD)
-                for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);
-            if (log->states) /* the last one may yet be replaced */
-                for (int k = 1; k <= passed; k++) memcpy(log->states + (size_t)(i + k) * n, at_samples[k], sizeof *x * n);
         }
-        if (passed == AHEAD && !rise) {
-            for (int k = 0; k < n; k++) x[k] += change[k];
-            if (log->states) memcpy(log->states + (size_t)(i + passed) * n, x, sizeof *x * n);
-        } else {
+        if (steps) {
+            memcpy(at_samples[0], x, sizeof *x * n);
+            for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);
+            if (passed == AHEAD && !rise)
+                for (int k = 0; k < n; k++) at_samples[AHEAD][k] = x[k] + after[flat + k];
             memcpy(x, at_samples[passed], sizeof *x * n);
+            if (log->states)
+                for (int k = 1; k <= passed; k++) memcpy(log->states + (size_t)(i + k) * n, at_samples[k], sizeof *x * n);
+        } else {
+            for (int k = 0; k < n; k++) x[k] += after[flat + k];
         }
-        if (passed) memcpy(before, before + passed * rows, sizeof *x * rows);
+        double *other = before;
+        before = after, after = other;
         i += passed;
         log->work += passed;
     }
@@ -602,6 +626,6 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
 #include "steps.h"
 #include "prepare.h"
 
-const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, amounts, spread,
-                                            reach, complete, magnitudes, march, attempt, look, within, bend,
+const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, move, spread,
+                                            reach, complete, magnitudes, advance, march, attempt, look, within, bend,
                                             room, turn, fast_modes, prepare};

@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+enum { UNCOUPLED = -1, DENSE = -2 };
 enum {
     AHEAD = 4,        /* samples in one product */
     BLOCK = 16,       /* samples that share bounds */
@@ -48,20 +49,24 @@ typedef struct {
     int shift;            /* the first states, whose rates are as many states after them: y'[i] = y[shift + i] */
     int parts;            /* of y', whose magnitudes bound the rows */
     double h;
-    const double *block;     /* columns y, a0, a1 .., 1: rows after each of the next samples, then change of the states */
+    const double *block;     /* columns y, a0, a1 .., 1: each row after all of the next samples, then change of the states */
     const double *step;      /* columns y, a0, a1, 1: change of the states in one sample */
     const double *moves;     /* columns y, a, 1: parts of y', those of slow modes and amplitudes of fast ones */
-    const double *now;       /* columns y, a, 1: rates of the other states, conditions */
+    const double *now;       /* columns y, a, 1: rates of the other states, or as `border` says; conditions */
     const double *outs;      /* the same columns: outputs */
-    const double *slope;     /* columns y, a0, a1 .., 1: rates of the rows at these samples, without the part of a' */
+    const double *slope;     /* the same columns, 8 rows for each row: its rates at these samples, without the part of a' */
     const double *bend;      /* columns: n parts, variation of a, largest |a'|, other parts: h²/8 |r''| in a block */
     const double *cap;       /* the same columns: distance from the chord due to fast modes */
-    const double *centre;    /* columns y, a0, a1 .., 1: at these samples, what they swing about, within half of that */
+    const double *centre;    /* as `slope`: what the rows swing about at these samples, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
     const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''|, not less than 1e300 if there are fast modes */
     const double *direct;    /* of every row, the factor of a */
     const double *magnitude; /* |now| */
     const double *most;      /* |outs| */
+    const double *border;    /* a place q, UNCOUPLED, or DENSE. If it is not DENSE, the rates of modes are not in `now`, but
+                                y'[s + i] = α y[i] + β y[s + i] + ε z[q] + γ a + δ with z = now · x, i < s = shift; `now`
+                                has one row after another; the next 7 numbers say of its first rows which state alone they
+                                have, or -1; then follow all α, β, ε, γ and δ, and their magnitudes */
     const double *one_sided; /* 1 for outputs whose largest value counts, 0 where it is the largest magnitude */
     Shaken shaken;
 } Tables;
@@ -70,8 +75,9 @@ typedef struct {
     double *high, *when;     /* highest value of every output, and the sample at which it was reached */
     double passed;           /* samples before the first of this acceleration */
     double *states;          /* a row for every sample, if a history is kept; otherwise null */
-    double *candidates;      /* samples that may have a higher value within: phase, sample, y, bound of every output */
-    double *seen;            /* rows where the march has stopped for want of room */
+    double *candidates;      /* samples that may have a higher value within: phase, sample, how many samples before it
+                                the following y was, y, bound of every output */
+    double *seen;            /* rows where the march has begun, or stopped for want of room */
     int resumes;             /* whether it has, or has paused: it goes on from there with the same bits */
     int count, room, width;  /* rows of candidates, at most so many; doubles in a row */
     void *workspace;         /* of `Loops.workspace` bytes for the phase with most rows */
@@ -124,11 +130,12 @@ typedef struct { /* the loops for one level of vector instructions */
     int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width,
                   double *series);
     void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out);
-    void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out);
+    void (*move)(int rows, int terms, int width, const double *series, double t, double *out, double *sizes);
     void (*spread)(int rows, int terms, int width, const double *series, double *out);
     void (*reach)(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away);
     void (*complete)(const Tables *p, Climb v, int terms, int width, double *series);
     void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out);
+    void (*advance)(const Tables *p, const double *a, const double *y, double *next);
     int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log);
     double (*attempt)(const Phase *p, const Step *s, Rates rates, int counted);
     void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out);

@@ -15,7 +15,7 @@ typedef struct { /* room for the tables of one system: square matrices, and larg
 static Room room_for(const Shape *s, double *memory) {
     Room r = {.n = s->n, .w = up8(s->parts > s->n + AHEAD ? s->parts + 2 : s->n + AHEAD + 2)};
     const size_t square = (size_t)r.w * up8(s->n + 3);
-    const size_t large = (size_t)r.w * (up8((AHEAD + 1) * s->rows) + up8(s->n) + up8(s->parts) + 8);
+    const size_t large = (size_t)r.w * (up8(8 * s->rows) + up8(s->n) + up8(s->parts) + 8);
     double **squares[] = {&r.G, &r.X, &r.term, &r.next, &r.slow, &r.step, &r.grown, &r.rates, r.push, r.push + 1};
     double **tables[] = {&r.rows, &r.found, &r.most, &r.here, &r.after, &r.centre, &r.sway};
     for (size_t k = 0; k < sizeof squares / sizeof *squares; k++, r.size += square) *squares[k] = memory + r.size;
@@ -137,7 +137,7 @@ static void set_rows(int rows, int columns, int w, const double *from, double *t
 /* How far a mode of a phase turns within a step, at most, in rad. */
 static double turn(const Shape *s, const double *rates, double *memory) {
     Room r = room_for(s, memory);
-    memset(memory, 0, sizeof *memory * r.size);
+    memset(r.G, 0, sizeof *memory * (size_t)r.w * up8(s->n + 3));
     set_rows(s->n, s->n + 2, r.w, rates, r.G);
     for (int i = 0; i < s->n; i++) r.G[i * r.w + s->n] = r.G[i * r.w + s->n + 1] = 0.0;
     scale(s->n, r.w, s->h, r.G, r.G);
@@ -202,12 +202,19 @@ static void bound_growth(const Room *r, double h, int fine) {
 
 /* A table column after column, in groups of rows as in `product`; zeros below its rows. */
 static void lay(int rows, int columns, int w, const double *from, double *to) {
-    const int units = up8(rows) / 8, groups = (units + UNITS - 1) / UNITS;
-    for (int g = 0; g < groups; g++) {
-        const int first = units * g / groups * 8, last = units * (g + 1) / groups * 8;
+    for (int first = 0, last; first < up8(rows); first = last) {
+        last = first + 8 * units_of((up8(rows) - first) / 8);
         for (int j = 0; j < columns; j++)
             for (int i = first; i < last; i++) *to++ = i < rows ? from[(size_t)i * w + j] : 0.0;
     }
+}
+
+/* Put what rows are at some samples, from one sample after another, into one row after another, each with so many slots. */
+static void by_row(int rows, int samples, int slots, int w, const double *from, double *to) {
+    memset(to, 0, sizeof *to * (size_t)up8(rows * slots) * w);
+    for (int j = 0; j < rows; j++)
+        for (int k = 0; k < samples; k++)
+            memcpy(to + (size_t)(j * slots + k) * w, from + (size_t)(k * rows + j) * w, sizeof *to * w);
 }
 
 /* Rows with columns y, a and 1, a number of samples later: with columns y, a0, a1 .., 1. */
@@ -299,6 +306,45 @@ static void bound_derivatives(const Shape *s, const Room *r, const double *drive
     }
 }
 
+/* The only state that a row has, or 0 if it has none; -1 if it has several. */
+static int sole_state(int n, const double *row) {
+    int found = 0, count = 0;
+    for (int j = 0; j < n; j++)
+        if (row[j] != 0.0) count++, found = j;
+    return count > 1 ? -1 : found;
+}
+
+/* Write the rates of the first states' rates as those of modes, of which one other rate may add a share to each: `border` of
+   `Tables`. Rates that are not so to rounding are DENSE. */
+static int border(const Shape *s, const Room *r, double *to) {
+    const int n = s->n, w = r->w, size = up8(s->shift);
+    int several = 0;
+    *to = DENSE;
+    for (int i = 2 * s->shift; i < n; i++) several += sole_state(n, r->rates + i * w) < 0;
+    for (int i = s->outputs; i < s->rows; i++) several += sole_state(n, r->rows + i * w) < 0;
+    if (up8(n - s->shift + s->rows - s->outputs) <= 16 || several > 4) return DENSE; /* a product takes less time */
+    for (int q = UNCOUPLED; s->shift && q < n - 2 * s->shift && *to == DENSE; q++) {
+        const double *other = r->rates + (2 * s->shift + (q > 0 ? q : 0)) * w;
+        int fits = 1;
+        for (int i = 0; fits && i < s->shift; i++) {
+            const double *row = r->rates + (s->shift + i) * w;
+            const int own[] = {i, s->shift + i, n, n + 1};
+            double share = 0.0, most = 0.0;
+            for (int j = 0; q != UNCOUPLED && j < n; j++)
+                if (j != own[0] && j != own[1] && fabs(other[j]) > most) most = fabs(other[j]), share = row[j] / other[j];
+            for (int j = 0; fits && j < n; j++)
+                if (j != own[0] && j != own[1])
+                    fits = q == UNCOUPLED ? row[j] == 0.0 : fabs(row[j] - share * other[j]) <= 1e-15 * fabs(row[j]);
+            for (int k = 0; k < 4; k++)
+                to[8 + (k < 2 ? k : k + 1) * size + i] = row[own[k]] - (share != 0.0 ? share * other[own[k]] : 0.0);
+            to[8 + 2 * size + i] = share;
+        }
+        if (fits) *to = q;
+    }
+    for (int k = 0; k < 5 * size; k++) to[8 + 5 * size + k] = fabs(to[8 + k]);
+    return *to;
+}
+
 /* The tables of one system, each at its place of `to`, from [A f c] and the rows [C d e], with so many fast modes. Returns
    the halvings of a step so that power series converge; -1 if the motion overflows within it. */
 static int prepare(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
@@ -348,21 +394,31 @@ static int prepare(const Shape *s, const double *rates, const double *rows, int 
         }
     }
     for (int k = 0; k < AHEAD; k++) rows_later(r, R, r->rows, k + 1, here + k * R * w);
-    for (int i = AHEAD * R; i < up8(AHEAD * R); i++) memset(here + i * w, 0, sizeof *here * w);
-    memcpy(here + up8(AHEAD * R) * w, r->later[AHEAD], sizeof *here * n * w);
-    lay(up8(AHEAD * R) + n, columns, w, here, to + places[0]);
+    by_row(R, AHEAD, AHEAD, w, here, r->after);
+    memcpy(r->after + up8(AHEAD * R) * w, r->later[AHEAD], sizeof *here * n * w);
+    lay(up8(AHEAD * R) + n, columns, w, r->after, to + places[0]);
     multiply(R, n, n + 2, w, r->rows, r->rates, r->found);
-    for (int k = 0; k <= AHEAD; k++) rows_later(r, R, r->found, k, here + k * R * w);
-    lay((AHEAD + 1) * R, columns, w, here, to + places[5]);
-    for (int k = 0; parts > n && k <= AHEAD; k++) rows_later(r, R, r->centre, k, here + k * R * w);
-    if (parts > n) lay((AHEAD + 1) * R, columns, w, here, to + places[8]);
+    const double *ends[] = {r->found, r->centre};
+    for (int q = 0; q < 1 + (parts > n); q++) {
+        for (int k = 0; k <= AHEAD; k++) rows_later(r, R, ends[q], k, here + k * R * w);
+        by_row(R, AHEAD + 1, 8, w, here, r->after);
+        for (int j = 0; j < R; j++)
+            lay(8, columns, w, r->after + (size_t)j * 8 * w, to + places[q ? 8 : 5] + (size_t)j * 8 * columns);
+    }
 
-    const int now = n - s->shift + R - m;
-    memcpy(here, r->rates + s->shift * w, sizeof *here * (n - s->shift) * w);
-    memcpy(here + (n - s->shift) * w, r->rows + m * w, sizeof *here * (R - m) * w);
-    lay(now, n + 2, w, here, to + places[3]), lay(m, n + 2, w, r->rows, to + places[4]);
+    const int skipped = s->shift + (border(s, r, to + places[14]) == DENSE ? 0 : s->shift), now = n - skipped + R - m;
+    memcpy(here, r->rates + skipped * w, sizeof *here * (n - skipped) * w);
+    memcpy(here + (n - skipped) * w, r->rows + m * w, sizeof *here * (R - m) * w);
+    if (skipped > s->shift)
+        for (int i = 0; i < now; i++) {
+            if (i < 7) to[places[14] + 1 + i] = sole_state(n, here + i * w);
+            memcpy(to + places[3] + i * up8(n + 2), here + i * w, sizeof *to * (n + 2));
+        }
+    else
+        lay(now, n + 2, w, here, to + places[3]);
+    lay(m, n + 2, w, r->rows, to + places[4]);
     lay(R, 1, w, r->rows + n, to + places[11]);
-    for (int i = 0; i < up8(now) * (n + 2); i++) to[places[12] + i] = fabs(to[places[3] + i]);
+    for (int i = 0; i < places[4] - places[3]; i++) to[places[12] + i] = fabs(to[places[3] + i]);
     for (int i = 0; i < up8(m) * (n + 2); i++) to[places[13] + i] = fabs(to[places[4] + i]);
 
     bound_derivatives(s, r, driven, fine);

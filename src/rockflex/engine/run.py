@@ -588,7 +588,7 @@ class Run:
             i = self.series.candidate(r)
             self.load(self.series.phase_of(r))
             self.n_searched += 1
-            self.series.begin_search(r)
+            self.series.begin_search(r, a)
             u = 0.0
             while u < 1.0:
                 self.check_stop_request()

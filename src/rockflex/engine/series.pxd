@@ -30,7 +30,7 @@ cdef class Series:
     cdef int drop_hopeless_samples(self) noexcept nogil
     cdef int candidate(self, int r) noexcept nogil
     cdef int phase_of(self, int r) noexcept nogil
-    cdef void begin_search(self, int r) noexcept nogil
+    cdef void begin_search(self, int r, const double[::1] a) noexcept nogil
     cdef double search(self, int r, double start, double end, (double, double) v, double sample, double u) noexcept nogil
     cdef void raise_peaks(self, double stop, double sample, double[::1] highest) noexcept nogil
     cdef void reach_of_step(self) noexcept nogil

@@ -123,7 +123,8 @@ class Series:
         if self.phases.nonlinear(self.place):
             self.flow.sum_up(order, self.series, self.sizes, self.away, self.sums)
             return
-        self.term[:] = self.workspace
+        for i in range(self.states):
+            self.term[i] = self.workspace[i]
         if order == 0:
             for i in range(self.n):
                 self.workspace[i] = max(fabs(self.y[i]), self.sizes[i])
@@ -147,8 +148,7 @@ class Series:
                 self.flow.accept()
                 return
             self.flow.leave()
-        self.phases.amounts(self.series, self.terms, t, self.sizes)
-        self.phases.evaluate(self.series, self.terms, t, self.y)
+        self.phases.move(self.series, self.terms, t, self.y, self.sizes)
 
     def drop_hopeless_samples(self):
         """Drop the samples that cannot have higher peaks than those found so far; the number of the others."""
@@ -160,9 +160,11 @@ class Series:
         for r in range(self.peaks.count()):
             higher = False
             for j in range(self.outputs):
-                higher = higher or rows[r, 2 + self.n + j] > self.high[j]
+                higher = higher or rows[r, 3 + self.n + j] > self.high[j]
             if higher:
-                rows[kept, :] = rows[r, :]
+                if kept < r:
+                    for j in range(3 + self.n + self.outputs):
+                        rows[kept, j] = rows[r, j]
                 kept += 1
         self.peaks.keep(kept)
         return kept
@@ -175,16 +177,20 @@ class Series:
         """The place of its phase."""
         return cython.cast(cython.int, self.peaks.candidates[r, 0])
 
-    def begin_search(self, r):
+    def begin_search(self, r, a):
         """Take the state at the start of such a sample."""
+        k: cython.int
         rows: cython.double[:, ::1] = self.peaks.candidates
-        self.y[: self.n] = rows[r, 2 : 2 + self.n]
+        for k in range(self.n):
+            self.y[k] = rows[r, 3 + k]
+        for k in range(cython.cast(cython.int, rows[r, 2]), 0, -1):
+            self.phases.advance(self.phase_of(r), a, self.candidate(r) - k, self.y)
 
     def search(self, r, start, end, v, sample, u):
         """Raise the peaks to those in a part of such a sample, and move the state to its end; the place of the next."""
         part: cython.double = self.expand(self.phase_of(r), start, end, v, u)
         rows: cython.double[:, ::1] = self.peaks.candidates
-        self.raise_peaks(1.0, sample + u, rows[r, 2 + self.n :])
+        self.raise_peaks(1.0, sample + u, rows[r, 3 + self.n :])
         self.skip()
         return u + part if part < 1.0 - u else 1.0
 

@@ -1,13 +1,15 @@
 /* Samples in which the vertical acceleration acts; a part of `march.c`. */
 
-/* Outputs and conditions from y, a, 1 and a_v; there is room for rates and conditions. */
+/* Outputs and conditions from y, a, 1, zeros up to a multiple of 8, and a_v; there is room for rates and conditions. */
 static void rows_at(const Tables *p, const double *x, double v, double *room, double *rows) {
     const Climb climb = {v, 0.0};
     const int shakes = acts(p, climb), n = p->n, m = p->outputs, conditions = p->rows - m;
     const int rates = n - (shakes ? p->shaken.shift : p->shift), columns = shakes ? n + 3 + p->shaken.fed : n + 2;
     double more[MORE];
-    if (shakes) x = shaken_term(p, climb, 0, 0, x, more);
-    product(columns, up8(rates + conditions), shakes ? p->shaken.now : p->now, x, room);
+    if (shakes)
+        x = shaken_term(p, climb, 0, 0, x, more), product(columns, up8(rates + conditions), p->shaken.now, x, room);
+    else
+        rates_of(p, 0, x, room);
     memcpy(rows + m, room + rates, sizeof *x * conditions);
     product(columns, up8(m), shakes ? p->shaken.outs : p->outs, x, room);
     memcpy(rows, room, sizeof *x * m);
@@ -123,25 +125,27 @@ static int go_shaken(const Tables *p, const double *a, const double *v, int samp
                      double *after) {
     const Shaken *s = &p->shaken;
     const int n = p->n, rows = p->rows;
-    double x[MAX_STATES + 2], more[MORE];
+    double x[MAX_STATES + 2], more[MORE], found[MAX_ROWS];
     int k = 0;
-    for (; k < samples && marches_shaken(p); k++, before = after, after += rows) {
+    for (; k < samples && marches_shaken(p); k++) {
         if (!(fabs(v[k]) <= *s->limit && fabs(v[k + 1]) <= *s->limit)) break;
         if (!advance_shaken(p, a + k, v + k, y[k], y[k + 1])) break;
         memcpy(x, y[k + 1], sizeof *x * n);
         x[n] = a[k + 1], x[n + 1] = 1.0;
         const Climb climb = {v[k + 1], 0.0};
-        product(n + 3 + s->fed, up8(rows), s->rows, shaken_term(p, climb, 0, 0, x, more), after);
+        product(n + 3 + s->fed, up8(rows), s->rows, shaken_term(p, climb, 0, 0, x, more), found);
+        for (int j = 0; j < rows; j++) after[AHEAD * j + k] = found[j];
     }
-    for (int j = k; j < AHEAD; j++, before = after, after += rows) memcpy(after, before, sizeof *after * rows);
+    for (int j = 0; j < rows; j++)
+        for (int q = k; q < AHEAD; q++) after[AHEAD * j + q] = q ? after[AHEAD * j + q - 1] : before[AHEAD * j + AHEAD - 1];
     return k;
 }
 
 /* The slopes of the rows at both ends of some samples, without the parts of a' and a_v'. */
-static void slopes_shaken(const Tables *p, const double *a, const double *v, int samples, States y, const Bounds *bounds) {
+static void slopes_shaken(const Tables *p, const double *a, const double *v, int samples, States y, const Asking *asking) {
     const Shaken *s = &p->shaken;
     const int n = p->n, rows = p->rows, columns = n + 3 + s->fed;
-    double x[MAX_STATES + 2], more[MORE + MAX_FED], speeds[MAX_FED + 8];
+    double x[MAX_STATES + 2], more[MORE + MAX_FED], speeds[MAX_FED + 8], found[MAX_ROWS];
     for (int k = 0; k < samples; k++)
         for (int end = 0; end < 2; end++) {
             const Climb climb = {v[k + end], 0.0};
@@ -151,7 +155,8 @@ static void slopes_shaken(const Tables *p, const double *a, const double *v, int
             product(columns, up8(s->fed), s->speeds, more, speeds);
             for (int j = 0; j < s->fed; j++)
                 more[columns + j] = (v[k + 1] - v[k]) / p->h * x[s->places[j]] + v[k + end] * speeds[j];
-            product(columns + s->fed, up8(rows), s->slope, more, (end ? bounds->ends : bounds->slopes) + k * rows);
+            product(columns + s->fed, up8(rows), s->slope, more, found);
+            memcpy((end ? asking->ends : asking->slopes) + k * rows, found, sizeof *found * rows);
         }
-    for (int f = samples * rows; f < up8(AHEAD * rows); f++) bounds->slopes[f] = bounds->ends[f] = 0.0;
+    for (int f = samples * rows; f < AHEAD * rows; f++) asking->slopes[f] = asking->ends[f] = 0.0;
 }

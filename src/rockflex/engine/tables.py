@@ -1,7 +1,6 @@
 """The matrices of a phase for one time step in NumPy, as `prepare.h` makes them."""
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +10,8 @@ from rockflex.engine.system import Event, LinearPhase, NonlinearPhase, Rest, up8
 from rockflex.foundation.arrays import Array
 
 AHEAD, BLOCK = 4, 16  # as in march.h
+DENSE = -2.0  # as in march.h
+SLOTS = 8  # of each row, in a table for the ends of AHEAD samples
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
 FEWEST = 10  # terms of a series, of which none is looked at: that they end earlier is rare
 SMALL = 1e-18  # of a sum: terms that no longer change it
@@ -43,6 +44,7 @@ class Tables(NamedTuple):
     direct: Array
     magnitude: Array
     most: Array
+    border: Array  # of no use here, where all rates are in `now`
 
 
 def rates_and_rows(phase: LinearPhase) -> tuple[Array, Array]:
@@ -94,20 +96,21 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
         rows=R,
         shift=shift,
         halvings=np.where(endless, ENDLESS, halvings_of(turn, LONGEST)).astype(np.intc),
-        block=np.concatenate((rows_at_samples(rows, changes, 1), padded(changes[:, -1])), axis=1),
+        block=np.concatenate((rows_at_samples(rows, changes, 1, AHEAD), padded(changes[:, -1])), axis=1),
         step=padded(step),
         moves=padded(moves @ rates),
         now=now,
         outs=outs,
-        slope=rows_at_samples(by_rows(C, rates), changes, 0),
+        slope=rows_at_samples(by_rows(C, rates), changes, 0, SLOTS),
         bend=padded(bend),
         cap=padded(cap),
-        centre=rows_at_samples(centre, changes, 0),
+        centre=rows_at_samples(centre, changes, 0, SLOTS),
         sway=padded(sway),
         jolt=padded(jolt),
         direct=padded(rows[:, :, n, None]),
         magnitude=np.abs(now),
         most=np.abs(outs),
+        border=np.tile(DENSE * np.eye(8, 1), (S, 1, 1)),
     )
 
 
@@ -129,7 +132,13 @@ def tables_of_nonlinear_phase(phase: NonlinearPhase) -> Tables:
     outs[..., :n], outs[..., n], outs[..., n + 1] = phase.C, phase.d, phase.e
     for row, event in zip(now.swapaxes(0, 1), phase.events, strict=True):
         row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
-    tables = {"now": now, "outs": outs, "magnitude": np.abs(now), "most": np.abs(outs)}
+    tables = {
+        "now": now,
+        "outs": outs,
+        "magnitude": np.abs(now),
+        "most": np.abs(outs),
+        "border": DENSE * np.eye(8, 1)[None],
+    }
     empty = dict.fromkeys(set(Tables._fields[4:]) - set(tables), np.zeros((1, 0, 2)))
     known = {name: padded(table) for name, table in tables.items()}
     return Tables(outputs=m, rows=m + k, shift=n, halvings=np.zeros(1, dtype=np.intc), **known, **empty)
@@ -204,15 +213,17 @@ def state_changes_at_samples(step: Array) -> Array:
     return found
 
 
-def rows_at_samples(rows: Array, changes: Array, first: int) -> Array:
-    """The rows at the samples from the first on, one sample after another, from the same."""
+def rows_at_samples(rows: Array, changes: Array, first: int, slots: int) -> Array:
+    """Each row at the samples from the first on, and zeros up to so many slots, from the same."""
     S, K, n, columns = changes.shape
     seen = by_rows(rows[:, None, :, :n], changes[:, first:])
     seen[..., :n] += rows[:, None, :, :n]
     of_acceleration = np.einsum("skrk->skr", seen[..., n + first : n + K])  # a view
     of_acceleration += rows[:, None, :, n]
     seen[..., -1] += rows[:, None, :, n + 1]
-    return padded(seen.reshape(S, -1, columns))
+    found = np.zeros((S, rows.shape[1], slots, columns))
+    found[:, :, : K - first] = seen.swapaxes(1, 2)
+    return padded(found.reshape(S, -1, columns))
 
 
 def derivative_bound_factors(
@@ -313,11 +324,14 @@ def exponentials_less_identity(G: Array, halvings: int) -> list[Array]:
 def tables_in_row_groups(tables: Array, most: int) -> Array:
     """The tables column after column, in groups of at most so many rows, of nearly the same size."""
     count, rows, _ = tables.shape
-    groups = -(-rows // most)
-    if groups < 2:
+    if rows <= most:
         return tables.transpose(0, 2, 1).reshape(count, -1)
-    bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
-    parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
+    parts, first = list[Array](), 0
+    while first < rows:  # the last two groups are of nearly the same size
+        left = (rows - first) // 8
+        last = first + 8 * min(left if left <= most // 8 else (left + 1) // 2, most // 8)
+        parts.append(tables[:, first:last].transpose(0, 2, 1).reshape(count, -1))
+        first = last
     return np.concatenate(parts, axis=1)
 
 
@@ -369,12 +383,14 @@ def room_of_tables(
     systems: int, n: int, outputs: int, rows: int, shift: int, parts: int, more: Sequence[Array]
 ) -> tuple[Array, NDArray[np.intp]]:
     """An array with room for the tables of a linear phase, as in `march.h`, and with more parts; and their places."""
-    later, bounds, now = n + AHEAD + 2, parts + 2, up8(n - shift + rows - outputs) * (n + 2)
-    fast, outs, slopes = int(parts > n), up8(outputs) * (n + 2), up8((AHEAD + 1) * rows) * later
+    later, bounds, looked_at = n + AHEAD + 2, parts + 2, n - shift + rows - outputs
+    now = max(up8(looked_at) * (n + 2), (looked_at - shift) * up8(n + 2))
+    fast, outs, slopes = int(parts > n), up8(outputs) * (n + 2), SLOTS * rows * later
     block = (up8(AHEAD * rows) + up8(n)) * later
     bounded = up8(rows) * bounds
     sizes = [block, up8(n) * (n + 3), up8(parts) * (n + 2), now, outs, slopes]
     sizes += [bounded, bounded * fast, slopes * fast, bounded, up8(rows - outputs) * bounds, up8(rows), now, outs]
+    sizes += [8 + 10 * up8(shift)]
     content, places = room_for([*sizes, *(part.shape[1] for part in more)], systems)
     fill(content, places[len(sizes) :], more)
     return content, places
