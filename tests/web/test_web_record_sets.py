@@ -131,6 +131,7 @@ def test_files_of_a_set(client, state, done, same, tmp_path, monkeypatch) -> Non
     assert "<title>Frame under 7 records</title>" in text
     assert ", fails)" in text
     assert "Target: EC8 type 1, ground C, 0.25 g, 0.200–2.00 s; T_1 = 1.00 s" in text
+    assert text.count("<svg") == 2  # the target with the spectra, and the peaks
     for column in ("mean", "design"):
         assert f'data-of="{column}" data-value="{float(same.statistics.loc["max_rotation", column])!r}"' in text
     assert b"<svg" in client.download(f"{path}/figure", state)[1]

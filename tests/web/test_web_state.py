@@ -439,6 +439,9 @@ def test_the_limits_of_its_lists(client) -> None:
     assert [(each["name"], each["clause"]) for each in listed] == [
         ("rocking", "it rocks (uplift with θ > 0.1 mrad)"),
         ("rotation", "the rotation exceeds …"),
+        ("drift", "the top drifts, apart from the rotation, by more than …"),
+        ("residual_drift", "a story keeps a drift of more than …"),
+        ("ductility", "a story needs a ductility of more than …"),
         ("nominal", "the nominal limit 0.7 atan(B/h*₁)"),
         ("overturning", "it overturns"),
     ]

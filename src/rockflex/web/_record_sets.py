@@ -14,6 +14,7 @@ from rockflex.foundation.language import translated, use_language
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._suite import Selection
 from rockflex.report.run._report_page import run_report_as_html
 from rockflex.response._comparison import Comparison
 from rockflex.response._limit_checks import check
@@ -79,7 +80,12 @@ class RecordSetStudy:
     others: tuple[RunsOfSet, ...]
     records: VisitorRecords
     motions: tuple[GroundMotion, ...]
-    periods: tuple[float, float] | None
+    selection: Selection | None
+
+    @property
+    def periods(self) -> tuple[float, float] | None:
+        """Smallest and largest period in s for which the records were chosen."""
+        return None if self.selection is None else (float(self.selection.periods[0]), float(self.selection.periods[-1]))
 
     @property
     def all(self) -> tuple[RunsOfSet, ...]:
@@ -131,11 +137,8 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
         check_size_of_set([own.case], motions, "record_set.suites")
     with errors_as_refusals("record_set.rule"):
         checked_rule(choice.rule or None, len(motions))
-    periods = None
-    if choice.suites == [SELECTED]:
-        chosen = SELECTIONS.of(state, uploads)[0].periods
-        periods = (float(chosen[0]), float(chosen[-1]))
-    return RecordSetStudy(own, tuple(others), records, motions, periods)
+    chosen = SELECTIONS.of(state, uploads)[0] if choice.suites == [SELECTED] else None
+    return RecordSetStudy(own, tuple(others), records, motions, chosen)
 
 
 def _checksum_of_motions(motions: tuple[GroundMotion, ...]) -> str:
@@ -343,6 +346,7 @@ def _record_set_report(job: RecordSetJob, state: PageState) -> str:
         units=state.units,
         language=state.language,
         notes=input_notes(state, of_set=True),
+        selection=study.selection,
         **head,
         limits=state.check_limits(friction=study.own.friction),
     )

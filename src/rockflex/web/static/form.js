@@ -7,8 +7,11 @@ import { fromSI, toSI, unitFor } from "./units.js";
 
 let serial = 0;
 
-// The range of a number, in words.
-export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
+// The range of a number in the unit `shown`, in words; with `name` it is that of the field of this name, and the numbers are in SI.
+export function between(low, high, shown = "", name = "") {
+  const { size, name: unit } = name ? unitFor(shown, name) : { size: 1, name: shown };
+  return `${t("{low} to {high}", { low: number(low / size), high: number(high / size) })}${unit ? ` ${unit}` : ""}`;
+}
 
 // A field around any control; the server's messages about `path` appear in it. `unit` is that of SI: `element.unit` is shown.
 export function field(path, label, control, { unit = "", hint = "", help = "", name = "" } = {}) {

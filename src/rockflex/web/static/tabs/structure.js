@@ -63,8 +63,8 @@ export default function structureTab(app) {
 
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
-    if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } };
-    const usual = { models, cloud: { models: cloud.models }, design: { model: design.model } };
+    if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"], limit: "overturning" }, design: { model: "rigid" } };
+    const usual = { models, cloud: { models: cloud.models, limit: cloud.limit }, design: { model: design.model } };
     return app.state.ground ? without({ structure: {}, ...usual }) : usual;
   }
 
@@ -297,11 +297,6 @@ const SHAPES = [
 const SIZES = {
   rectangle: { width: 1, depth: 1.5 }, box: { width: 2, depth: 2, wall: 0.25 }, circle: { diameter: 1.5 }, tube: { diameter: 1.5, wall: 0.2 },
 };
-const MATERIALS = [
-  [t("concrete"), { elastic_modulus: 3e10, density: 2500 }], [t("steel"), { elastic_modulus: 2.1e11, density: 7850 }],
-  [t("timber"), { elastic_modulus: 1.1e10, density: 450 }], [t("masonry"), { elastic_modulus: 5e9, density: 1900 }],
-];
-const [CONCRETE, STEEL] = MATERIALS.map(([, values]) => values);
 const OF_MATERIAL = ["elastic_modulus", "density"];
 const MOST = 20; // parts
 
@@ -313,6 +308,8 @@ function section(about, path, spec, current, change) {
   const drawn = current();
   const shape = drawn?.shape ?? "";
   const partSpecs = about.section_part;
+  const materials = about.materials.map(({ title, ...values }) => [t(title), values]);
+  const [CONCRETE, STEEL] = materials.map(([, values]) => values);
   const choose = select(`${path}.shape`, t("Cross-section"), SHAPES, shape, (name) => change(turned(name), true),
     { hint: t("in place of bending stiffness and mass") });
 
@@ -343,10 +340,10 @@ function section(about, path, spec, current, change) {
 
   // A list that fills in the material.
   function material(get, put) {
-    const same = MATERIALS.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
-    const names = [...MATERIALS.map(([name]) => [name, name]), ["", t("own values")]];
+    const same = materials.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
+    const names = [...materials.map(([name]) => [name, name]), ["", t("own values")]];
     return select("section.material", t("Material"), names, same?.[0] ?? "", (name) => {
-      const found = MATERIALS.find(([each]) => each === name);
+      const found = materials.find(([each]) => each === name);
       if (found) put({ ...get(), ...found[1] }, true);
     });
   }
