@@ -122,6 +122,27 @@ def test_demands_checks_and_the_report_are_in_the_units_of_the_page(client, stat
     assert "kN m" not in report
 
 
+def test_the_friction_on_springs_is_that_of_the_library_or_says_what_it_takes(client, monkeypatch) -> None:
+    springs = {"base_inertia": 5e5, "springs": {"positions": [-1.0, 0.0, 1.0], "stiffness": 4e8, "damping": 1e6}}
+    state = client.state(models=["2DOF-S"], ground=springs, limits={"friction": 0.3})
+
+    def row(view):
+        return next((each for each in view["checks"]["rows"] if each["name"] == "sliding"), None)
+
+    one = row(client.ask("/api/response", state))
+    state["record_set"] = {"suites": ["el-centro-1940"], "rule": "", "shown": True}
+    _, answer = client.study("record_set", state)
+    assert row(answer)["ratio"] == pytest.approx(one["ratio"], rel=1e-12)
+    ground = rf.Ground(springs=rf.Springs([-1.0, 0.0, 1.0], stiffness=4e8, damping=1e6), base_inertia=5e5)
+    motion = rf.load_suite("el-centro-1940")[0]
+    run = rf.simulate(make_frame(), motion, "2DOF-S", ground=ground, free_vibration=5.0, output="history")
+    assert one["value"] == pytest.approx(run.required_friction_excluding_impacts(), rel=1e-9)
+    monkeypatch.setattr("rockflex.web._response.FRICTION_SECONDS", 0.0)
+    view = client.ask("/api/response", state | {"scale": 1.1})
+    assert row(view) is None
+    assert any(name == "sliding" and "set of records" in lacks for name, lacks in view["checks"]["missing"])
+
+
 @pytest.mark.slow
 def test_files_of_a_set(client, state, done, same, tmp_path, monkeypatch) -> None:
     path = f"/api/study/record_set/{done[0]}"

@@ -116,10 +116,11 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
         with errors_as_refusals(path, f"{label}: "):
             options = each.run_options(ground)
             case = options.case(parse_model(label), built.properties, history=True, floors=True)
-        friction = "friction" in state.limits and case.model.springs is None  # on springs it takes minutes
         made_from = [each.structure.model_dump(exclude_none=True), each.option_keys([label]), label]
         made_from += [state.free_vibration, acting]
-        return RunsOfSet(name, each, built, case, friction, sha256(json.dumps(made_from).encode()).hexdigest())
+        return RunsOfSet(
+            name, each, built, case, "friction" in state.limits, sha256(json.dumps(made_from).encode()).hexdigest()
+        )
 
     own = runs(next_free_name(state), state, state.model_of_set, "record_set.model")
     others = list[RunsOfSet]()
@@ -306,7 +307,7 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         for run, motion in zip(found.responses, found.motions, strict=True)
     ]  # fmt: skip
     own = job.study.own
-    view["friction_due"] = "friction" in state.limits and not own.friction and own.case.model.springs is None
+    view["friction_due"] = "friction" in state.limits and not own.friction
     reached = found.rocking_period
     view["short"] = found.periods is not None and found.periods[1] < min(reached, _longest_of_target(state))
     view["model"], view["warnings"] = found.responses[0].model, found.warnings

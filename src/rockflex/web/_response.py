@@ -3,13 +3,16 @@
 import math
 from collections.abc import Sequence
 from contextlib import suppress
+from time import monotonic
 from typing import Any
 
 import numpy as np
 
+from rockflex.engine.stops import RunStoppedError, asked_to_stop, stopping_when
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.models._work import cost_model_of
@@ -186,7 +189,7 @@ def response_view(
             "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
             "floors": floors_view(found[0]),
-            "checks": checks_view(found[0], state, friction=not is_long_run_report(found[0], motion, state)),
+            "checks": checks_view(found[0], state, friction=friction_is_known(found[0], state)),
         }
     )
 
@@ -313,10 +316,7 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
 
 
 def is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
-    """Whether energies and friction would take too long here, as they do on many stiff springs."""
-    assert response.history is not None  # asked for in `simulate_state_models`
-    if response.history.model.springs is not None:
-        return True
+    """Whether the energies of a run would take too long for its report."""
     try:
         check_work_of_energy(response, motion, state)
     except Refusal:
@@ -324,7 +324,22 @@ def is_long_run_report(response: Response, motion: GroundMotion, state: PageStat
     return False
 
 
-LONG_FRICTION = "its friction takes too long for a page; use rockflex check, or rf.check"
+FRICTION_SECONDS = 2.0  # of an answer, for the friction that a run requires
+
+
+def friction_is_known(run: Response, state: PageState) -> bool:
+    """Compute the friction that a run requires, if it is limited, and tell whether it was in time; the run keeps it."""
+    if "friction" not in state.limits or run.history is None or run.history.model.layout.slip >= 0:
+        return True
+    end, left = monotonic() + FRICTION_SECONDS, asked_to_stop()
+    try:
+        with stopping_when(lambda: left() or monotonic() > end), suppress(InputError):
+            run.history.required_friction_excluding_impacts()
+    except RunStoppedError:
+        if left():
+            raise
+        return False
+    return True
 
 
 def checks_view(result: Response | RecordSet, state: PageState, *, friction: bool) -> dict[str, Any]:
@@ -333,7 +348,11 @@ def checks_view(result: Response | RecordSet, state: PageState, *, friction: boo
     `unlimited` has the names of the checks that only need a limit, and `missing` what the others lack.
     """
     table = check(result, state.check_limits(friction=friction))
-    left_out = {"sliding": LONG_FRICTION} if "friction" in state.limits and not friction else {}
+    long = translated(
+        "the friction that it requires takes more than {n} s here; a set of records computes it in the background",
+        n=f"{FRICTION_SECONDS:g}",
+    )
+    left_out = {"sliding": long} if "friction" in state.limits and not friction else {}
     missing = [(name, left_out.get(name, lacks)) for name, lacks in table.missing]
     rows: list[dict[str, Any]] = []
     for each in table.rows:
