@@ -40,7 +40,7 @@ from rockflex.web._selection import (
     target_spectrum_of_choice,
 )
 from rockflex.web._state import PageState, refusals_of_alternative
-from rockflex.web._structure import BuiltStructure, build_page_structure, ground_under_page_structure
+from rockflex.web._structure import SLICED, BuiltStructure, build_page_structure, ground_under_page_structure
 from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
@@ -104,7 +104,7 @@ FIXED = "fixed"  # the present structure on a fixed base
 
 
 def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStudy:
-    """Return the runs of the set of records of a state; with alternatives also theirs, and those of a fixed base."""
+    """Return the runs of the set of records of a state, of its alternatives and of a fixed base."""
     choice = state.record_set
     records = records_of_named_suites(state, choice.suites, uploads, "record_set.suites")
     motions = tuple(each if choice.scale == 1.0 else each.scaled(choice.scale) for each in records.load(Path()))
@@ -127,8 +127,8 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
     for kept in state.alternatives:
         with refusals_of_alternative(kept.name):
             others.append(runs(kept.name, state.kept_state(kept), model_of_alternative(kept), "alternatives"))
-    if others and own.built.properties.n_modes and FIXED not in (each.name for each in others):
-        others.append(runs(FIXED, state, FIXED, "alternatives"))
+    if own.built.properties.n_modes and own.case.model.lifts and FIXED not in (each.name for each in others):
+        others.append(runs(FIXED, state, FIXED, "record_set.model"))
     try:
         check_size_of_set([each.case for each in (own, *others)], motions, "record_set.suites")
     except Refusal:
@@ -201,7 +201,7 @@ def _set_of_job(job: RecordSetJob, state: PageState, runs: RunsOfSet | None = No
 
 def _compared_view(job: RecordSetJob, state: PageState) -> dict[str, Any] | None:
     """Return values for design and checks of all alternatives; None without one."""
-    if not job.study.others:
+    if all(each.state is job.study.own.state for each in job.study.others):
         return None
     compared = job.study.compared
     sets = [_set_of_job(job, state, each) for each in compared]
@@ -300,6 +300,7 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         {"name": name, "symbol": OUTPUTS[name].symbol, "unit": unit.name, "size": unit.size,
          "listed": name in DEMANDS_BY_RECORD, "peaks": peaks[name].tolist(), **statistics.loc[name].to_dict()}
         for name, unit in units.items()
+        if name != "max_story_drift" or state.structure.kind not in SLICED
     ]  # fmt: skip
     view["records"] = [
         {"name": run.motion, "status": run.status, "scale": None if motion.metadata is None else motion.metadata.scale,
@@ -313,6 +314,10 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
     view["checks"] = checks_view(found, state, friction=own.friction)
     view["compared"] = _compared_view(job, state)
+    view["fixed_moment"] = next(
+        (_set_of_job(job, state, each).statistics.loc["max_base_moment", "design"] for each in job.study.others
+         if each.state is job.study.own.state), None,
+    )  # fmt: skip
     return as_json_value(view)
 
 

@@ -194,6 +194,18 @@ class PulseChoice(TomlTable):
     nu: float = Field(0.0, ge=-math.pi, le=math.pi, description="the phase ν in rad, from -π to π")
 
 
+class SiteChoice(TomlTable):
+    """The few numbers of a structure at a site, from which "My site" makes all others."""
+
+    kind: Literal["pier", "building", "block"] = Field("pier", description='"pier", "building" or "block"')
+    width: float = Field(7.0, ge=0.05, le=200.0, description="the width of the base in m, from 0.05 to 200")
+    height: float = Field(24.0, ge=0.1, le=400.0, description="the height in m, from 0.1 to 400")
+    weight: float = Field(15e6, ge=10.0, le=1e10, description="the weight in N, from 10 to 1e10")
+    material: Literal["concrete", "steel", "timber", "masonry"] = Field(
+        "concrete", description='"concrete", "steel", "timber" or "masonry"'
+    )
+
+
 class RecordChoice(TomlTable):
     """A ground motion: one of a suite, a pulse, an upload by its checksum, or one of the folder with its checksum.
 
@@ -311,6 +323,7 @@ class PageState(RunOptionKeys):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+    site: SiteChoice = Field(default_factory=lambda: SiteChoice.model_validate({}), description="a table")
     alternatives: list[Alternative] = Field(
         [], max_length=MAX_ALTERNATIVES, description=f"a list of at most {MAX_ALTERNATIVES} tables"
     )

@@ -28,6 +28,7 @@ from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
+SLICED = ("cantilever", "beam", "tapered_tower", "wall_frame")  # kinds whose floors are slices of what is continuous
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
 
 

@@ -50,4 +50,12 @@ export function eachNumber(value, change) {
 
 // Without the last digits, which only rounding makes.
 export const fromSI = (value, { size }, digits = 12) => eachNumber(value, (each) => (size === 1 ? each : Number((each / size).toPrecision(digits))));
+// As in a field: what a conversion makes long has four digits, until it is typed.
+const LONG = 1e6; // of the digits of a number as a whole one
+export const inField = (value, own) => {
+  const exact = fromSI(value, own);
+  if (typeof exact !== "number" || own.size === 1) return exact;
+  const digits = exact.toExponential().replace(/e.*|[-.]/g, "");
+  return Number(digits) > LONG ? Number(exact.toPrecision(4)) : exact;
+};
 export const toSI = (value, { size }) => eachNumber(value, (each) => (size === 1 ? each : Number((each * size).toPrecision(15))));

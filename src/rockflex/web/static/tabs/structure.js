@@ -2,16 +2,16 @@
 
 import { alternatives } from "../alternatives.js";
 import { attempt, send } from "../api.js";
-import { isRigid } from "../choices.js";
+import { CHOSEN, isRigid } from "../choices.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { downloads, reports } from "../jobs.js";
 import { project } from "../project.js";
+import { site } from "../site.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { elements, ground, without } from "./base.js";
-import { runs } from "./runs.js";
 
 // Default values of a form where no preset has the kind.
 const DEFAULTS = {
@@ -42,6 +42,7 @@ const DEFAULTS = {
 const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
 };
+const narrow = matchMedia("(max-width: 900px)");
 const FLOORLESS = ["properties", "block", "rocking_frame"]; // kinds whose floors are not known: no mass leans on them, and no story yields
 const YIELD = 0.3; // share of the weight that new stories bear before they yield
 
@@ -68,8 +69,8 @@ export default function structureTab(app) {
     return app.state.ground ? without({ structure: {}, ...usual }) : usual;
   }
 
-  const own = [["", t("custom structure")], ...presets.map((p, i) => [String(i), t(p.title)])];
-  const preset = select("preset", t("Start from"), own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
+  const listed = [["", t("custom structure")], ...presets.map((p, i) => [String(i), t(p.title)])];
+  const preset = select("preset", t("Start from"), listed, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
   const titles = Object.entries(kinds).map(([name, { title }]) => [name, t(title)]);
   const kind = select("kind", t("Kind"), titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
@@ -82,21 +83,31 @@ export default function structureTab(app) {
     drawn = false;
     app.change({});
   });
-  const options = runs(app, () => null);
+  const own = site(app, ({ structure, target }) => {
+    app.begin = "record_set";
+    drawn = false;
+    const none = { ground: undefined, bouc_wen: undefined, impact: undefined, restitution: undefined };
+    app.change({ structure, ...modelsFor(isRigid(structure)), ...none, target, tab: "response", scale: 1,
+      record_set: { shown: true, suites: [CHOSEN], scale: 1, rule: "ec8" } });
+    app.go("response");
+  });
   const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw(), true);
   const saved = project(app);
   const facts = h("div");
   const more = folded("modes", t("Modes, masses, and which model to use"), facts);
   const results = h("div", { class: "results" }, kept.element, more, app.next("response", t("Next: see forces and energies over time.")),
     app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
-  const element = h("div", { class: "columns first" }, shown.player.element,
-    h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
-      folded("structure", t("Structure: all fields"), kind, field("structure.name", t("Name"), name),
-        h("div", { "data-path": "structure" }, fields, trouble())),
-      held, below, folded("runs", t("Models and assumptions"), options.element),
-      folded("import", t("Import matrices"), importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
-    results);
+  const matrices = importMatrices(limits.file, current, (structure) => put(structure, true));
+  const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
+    own.element, h("fieldset", {}, h("legend", {}, t("This structure")), preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
+    folded("structure", t("Structure: all fields"), kind, matrices, field("structure.name", t("Name"), name),
+      h("div", { "data-path": "structure" }, fields, trouble())),
+    held, below, saved.element);
+  const element = h("div", { class: "columns first" }, side, shown.player.element, results);
+  // In the order in which the eye reads: a narrow window has the drawing above the form.
+  const order = () => element.prepend(...(narrow.matches ? [shown.player.element, side] : [side, shown.player.element]));
+  narrow.addEventListener("change", order);
+  order();
 
   // The first preset of a kind, or default values.
   function fresh(wanted) {
@@ -108,6 +119,7 @@ export default function structureTab(app) {
     const { structure } = app.state;
     const now = kindOf(structure, kinds);
     kind.setValue(now);
+    matrices.hidden = now !== "matrices";
     if (document.activeElement !== name) name.value = structure.name ?? "";
     const match = presets.findIndex((p) => same(p.structure, structure));
     preset.setValue(match < 0 ? "" : String(match));
@@ -221,21 +233,28 @@ export default function structureTab(app) {
       below.refresh();
       kept.refresh();
       saved.refresh();
-      options.refresh();
+      own.refresh();
       shown.quick.refresh();
     }
     shown.resume();
     load();
   }
-  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs), drop: ([file]) => saved.take(file) };
+  return { element, refresh, leave: () => shown.leave(), drop: ([file]) => saved.take(file) };
 }
+
+// How the parameters follow from masses m at heights h, the half width B, and forces F₀ of tendons at r from the pivot.
+const FORMULAS = {
+  "m_tot": "m_tot = Σ m", "L₀ʳ": "L₀ʳ = Σ m h", "I_θ": "I_θ = Σ m (h² + B²)", "M_r": "M_r = m_tot g B + Σ F₀ r", "a_lift": "a_lift = M_r / L₀ʳ",
+  "α": "M(α) = 0; α = M_r / (g L₀ʳ)", "θ_nom": "θ_nom = 0.7 atan(B / h*₁)", "λ": "λ = (m_tot g B + Σ F₀ r) / Σ F_y r", "η": "η = θ'⁺ / θ'⁻",
+  "A": "A = ∫ dA", "I": "I = ∫ z² dA", "EI": "EI = k E I", "m": "m = ρ A", "w": "w = m_tot g / Σ k", "Σk": "Σ k", "Σkx²": "Σ k x²",
+};
 
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
 
 function parameter(p) {
   const own = p.quantity ? unit(p.quantity) : unitFor(p.unit);
   const value = p.none ? t("none: {reason}", { reason: t(p.none) }) : number(fromSI(p.value, own));
-  return h("div", {}, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
+  return h("div", { title: FORMULAS[p.symbol] }, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.edge ? EDGES[p.edge].replace("{fact}", t(p.help)) : t(p.help, p)));
 }
 
