@@ -93,11 +93,20 @@ class RecordSetStudy:
         return self.own, *self.others
 
     @property
+    def kept(self) -> tuple[RunsOfSet, ...]:
+        """The alternatives, without the fixed base of the present structure."""
+        return tuple(each for each in self.others if each.state is not self.own.state)
+
+    @property
+    def fixed(self) -> RunsOfSet | None:
+        """The present structure on a fixed base; None if the set would be too large with it, or it cannot lift."""
+        return next((each for each in self.others if each.state is self.own.state), None)
+
+    @property
     def compared(self) -> tuple[RunsOfSet, ...]:
         """Those side by side: the kept ones in their order, the present one unless it is kept, and the fixed base."""
-        kept = [each for each in self.others if each.name != FIXED]
-        present = [] if any(each.key == self.own.key for each in kept) else [self.own]
-        return (*kept, *present, *(each for each in self.others if each.name == FIXED))
+        present = [] if any(each.key == self.own.key for each in self.kept) else [self.own]
+        return (*self.kept, *present, *([] if self.fixed is None else [self.fixed]))
 
 
 FIXED = "fixed"  # the present structure on a fixed base
@@ -201,7 +210,7 @@ def _set_of_job(job: RecordSetJob, state: PageState, runs: RunsOfSet | None = No
 
 def _compared_view(job: RecordSetJob, state: PageState) -> dict[str, Any] | None:
     """Return values for design and checks of all alternatives; None without one."""
-    if all(each.state is job.study.own.state for each in job.study.others):
+    if not job.study.kept:
         return None
     compared = job.study.compared
     sets = [_set_of_job(job, state, each) for each in compared]
@@ -231,7 +240,7 @@ def _comparison_report(job: RecordSetJob, state: PageState) -> str:
     import pandas as pd
 
     compared = job.study.compared[:MAX_ALTERNATIVES]
-    if len(compared) < 2:
+    if not job.study.kept:
         raise Refusal({"alternatives": "there is none to compare with. Keep the present structure, and change it."})
     sets, names = [_set_of_job(job, state, each) for each in compared], [each.name for each in compared]
     frames = [found.peaks.reset_index().assign(structure=name) for name, found in zip(names, sets, strict=True)]
@@ -314,10 +323,8 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
     view["checks"] = checks_view(found, state, friction=own.friction)
     view["compared"] = _compared_view(job, state)
-    view["fixed_moment"] = next(
-        (_set_of_job(job, state, each).statistics.loc["max_base_moment", "design"] for each in job.study.others
-         if each.state is job.study.own.state), None,
-    )  # fmt: skip
+    fixed = job.study.fixed and _set_of_job(job, state, job.study.fixed)
+    view["fixed_moment"] = fixed and fixed.statistics.loc["max_base_moment", "design"]
     return as_json_value(view)
 
 

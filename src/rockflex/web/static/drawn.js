@@ -265,11 +265,13 @@ export function drawing(app, settle) {
   return { player, set, quick, stale, resume, leave: () => player.pause() };
 }
 
+const FORMULAS = { rotation: t("max |θ|"), top: t("max |u + h θ|"), moment: t("max |M_b| / max |M_b| of a fixed base"), share: t("max |θ| / θ_nom") };
+
 // Largest rotation, top displacement, and base moment over that of a fixed base.
 function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff, period: modal, nominal }) {
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
-  const one = (key, name, value, help, raw) => h("div", { title: { rotation: "max |θ(t)|", top: "max |u(t) + h θ(t)|", moment: "max |M_b(t)| / max |M_b,fixed(t)|", share: "max |θ(t)| / θ_nom" }[key] }, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
+  const one = (key, name, value, help, raw) => h("div", { title: FORMULAS[key] }, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
   const share = fixed ? inUnit(peaks.max_base_moment / fixed, "share", 3) : outputInUnit("max_base_moment", peaks.max_base_moment, 3);
   return [
     one("rotation", t("Largest rotation"), fell ? t("overturns") : outputInUnit("max_rotation", peaks.max_rotation, 3),

@@ -245,7 +245,7 @@ export default function structureTab(app) {
 // How the parameters follow from masses m at heights h, the half width B, and forces F₀ of tendons at r from the pivot.
 const FORMULAS = {
   "m_tot": "m_tot = Σ m", "L₀ʳ": "L₀ʳ = Σ m h", "I_θ": "I_θ = Σ m (h² + B²)", "M_r": "M_r = m_tot g B + Σ F₀ r", "a_lift": "a_lift = M_r / L₀ʳ",
-  "α": "M(α) = 0; α = M_r / (g L₀ʳ)", "θ_nom": "θ_nom = 0.7 atan(B / h*₁)", "λ": "λ = (m_tot g B + Σ F₀ r) / Σ F_y r", "η": "η = θ'⁺ / θ'⁻",
+  "α": "M(α) = 0; α = M_r / (g L₀ʳ)", "θ_nom": t("θ_nom = 0.7 atan(B / h*₁)"), "λ": "λ = (m_tot g B + Σ F₀ r) / Σ F_y r", "η": "η = θ'⁺ / θ'⁻",
   "A": "A = ∫ dA", "I": "I = ∫ z² dA", "EI": "EI = k E I", "m": "m = ρ A", "w": "w = m_tot g / Σ k", "Σk": "Σ k", "Σkx²": "Σ k x²",
 };
 
