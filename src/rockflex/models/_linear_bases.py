@@ -14,7 +14,6 @@ from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import STICK
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
-
 AT_ONCE = 1e-15  # s before θ = 0 at which a joint lands, so that one that moves inwards from there does so at once
 
 
