@@ -39,6 +39,11 @@ def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> An
     return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
 
 
+def column_pull(properties: RockingProperties, moment: float) -> float:
+    """Return the base moment of a run in N m over that which first pulls a column up; zero if that is not known."""
+    return 0.0 if properties.columns is None else moment / properties.columns.pull_moment
+
+
 def may_fall(
     properties: Sequence[RockingProperties], layout: StateLayout, final: Array, turned: Array, rocking: Bools
 ) -> Bools:

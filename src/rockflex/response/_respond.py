@@ -21,6 +21,7 @@ from rockflex.response._peaks import (
     ROTATIONS,
     TrackedPeaks,
     balance_ratio,
+    column_pull,
     element_extremes,
     element_peaks,
     largest_edge_moves,
@@ -65,6 +66,7 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         max_edge_uplift=uplift,
         max_edge_settlement=settlement,
         leaning_push=float(leaning_push(p, rotation, known["max_base_shear"])),
+        column_pull=column_pull(p, known["max_base_moment"]),
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
@@ -200,6 +202,12 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
+        "column_pull": np.array(
+            [
+                column_pull(each.properties, float(moment))
+                for each, moment in zip(models, peaks["base_moment"], strict=True)
+            ]
+        ),
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "guarded_impacts": solutions.guarded_impacts,
