@@ -119,6 +119,8 @@ def _run_sheet_panels(curves: list[ResponseCurve], height: float) -> list[str]:
         names += ["base_moment", "base_shear"]
     else:
         names.append("horizontal_reaction")
+    if any(model.layout.n_joints for model in models):
+        names.append("joint_rotation")
     if any(curve.response.max_slip for curve in curves):
         names.append("slip")
     if any(model.layout.heave >= 0 for model in models):

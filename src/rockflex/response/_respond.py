@@ -59,6 +59,7 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         if solution.overturned
         else float(final[model.layout.rotation]) - model.rest.rotation,
         balance_ratio=float(balance_ratio(model, right, left)),
+        max_joint_rotation=float(np.max(peaks.get("joint_rotation", 0.0))),
         max_slip=float(peaks.get("slip", 0.0)),
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         max_edge_uplift=uplift,
@@ -196,7 +197,7 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
+        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
         "n_uplifts": solutions.n_uplifts,

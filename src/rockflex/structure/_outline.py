@@ -122,6 +122,8 @@ class StructureOutline:
     masses
         Height in m and mass in kg of what is concentrated on the structure, without the base and what leans; none where
         the mass is distributed or not known.
+    joints
+        Heights of the joints above the base.
     """
 
     kind: Kind
@@ -132,6 +134,18 @@ class StructureOutline:
     strokes: tuple[Stroke, ...]
     elements: tuple[tuple[str, Array], ...]
     masses: Masses = ()
+    joints: tuple[float, ...] = ()
+
+    def sway(self, displacement: Array, joint_rotation: Array) -> Array:
+        """Return how far the points at `heights` move relative to the turned base in m, shape (k, m).
+
+        By the displacements of the modes in m, (k, n), and the rotations of the joints above the base in rad, (k, J).
+        """
+        levers = np.maximum(self.heights[:, None] - np.array(self.joints), 0.0)
+        return (
+            displacement @ self.shapes[:, : displacement.shape[1]].T
+            + joint_rotation @ levers.T[: joint_rotation.shape[1]]
+        )
 
     @property
     def top(self) -> float:
@@ -166,10 +180,13 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     behind = [_stroke(left if side > 0 else right, [0.0, top], 8.0, GROUND) for side in p.sides if len(p.sides) == 1]
     inner = innermost_structure(structure)
     wide = inner.half_widths(heights) if isinstance(inner, DrawnStructure) and kind != "block" else None
-    strokes = (*behind, *_body_strokes(kind, heights, left, right, wide, leaning=p.leaning_mass > 0.0), base)
+    gaps = [_stroke([-each.half_width, each.half_width], each.height, 4.0) for each in p.joints]
+    body = _body_strokes(kind, heights, left, right, wide, leaning=p.leaning_mass > 0.0)
+    strokes = (*behind, *body, *gaps, base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
     held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
-    return StructureOutline(kind, heights, shapes, left, right, strokes, held, _concentrated_masses(kind, p, structure))
+    masses, joints = _concentrated_masses(kind, p, structure), tuple(each.height for each in p.joints)
+    return StructureOutline(kind, heights, shapes, left, right, strokes, held, masses, joints)
 
 
 def _concentrated_masses(kind: Kind, p: RockingProperties, structure: Any) -> Masses:
