@@ -42,10 +42,11 @@ class Drawing(SphinxDirective):
         )
         name = f"{FOLDER}/{sha256(source.encode()).hexdigest()[:16]}.png"
         target = Path(self.env.srcdir) / name
-        made = _last_value(source)
-        if not isinstance(made, Figure):
-            return [nodes.raw("", f'<div class="notebook">{made._repr_html_()}</div>', format="html")]
-        rf.save_figure(made, target)
+        if not target.exists():
+            made = _last_value(source)
+            if not isinstance(made, Figure):
+                return [nodes.raw("", f'<div class="notebook">{made._repr_html_()}</div>', format="html")]
+            rf.save_figure(made, target)
         return [nodes.image(uri=f"/{name}", alt=self.options["alt"], width=self.options.get("width", "100%"))]
 
 

@@ -49,6 +49,15 @@ A spring is 1 wide to either side. The others are named after their colours on t
 """
 
 ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
+DARK_ELEMENT_COLORS = {
+    "tendons": "#de9cc4",
+    "fuse": "#b9c94a",
+    "damper": "#4cc3cf",
+    "friction": "#d0a875",
+    "law": "#b3a4ee",
+}
+"""Colours of the symbols on a light and on a dark background, in figures and on the page."""
+
 Masses: TypeAlias = tuple[tuple[float, float], ...]
 """Heights in m and masses in kg, from the bottom to the top."""
 
@@ -63,6 +72,11 @@ class DrawnStructure:
     def concentrated_masses(self) -> Masses:
         """Return the masses that it carries at single heights, without the base and what leans."""
         return ()
+
+    def half_widths(self, heights: Array) -> Array | None:
+        """Return half of its width in m at some heights above the base; None if it is drawn as a line."""
+        del heights
+        return None
 
     def _repr_html_(self) -> str:
         return _structure_html(self)
@@ -170,8 +184,11 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     left, right = -p.pivot(-1).arm, p.pivot(1).arm
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     behind = [_stroke(left if side > 0 else right, [0.0, top], 8.0, GROUND) for side in p.sides if len(p.sides) == 1]
+    inner = innermost_structure(structure)
+    wide = inner.half_widths(heights) if isinstance(inner, DrawnStructure) and kind != "block" else None
     gaps = [_stroke([-each.half_width, each.half_width], each.height, 4.0) for each in p.joints]
-    strokes = (*behind, *_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), *gaps, base)
+    body = _body_strokes(kind, heights, left, right, wide, leaning=p.leaning_mass > 0.0)
+    strokes = (*behind, *body, *gaps, base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
     held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
     masses, joints = _concentrated_masses(kind, p, structure), tuple(each.height for each in p.joints)
@@ -245,11 +262,16 @@ def _stroke(x: Any, z: Any, width: float, how: Any = BODY, *, filled: bool = Fal
     return Stroke(np.column_stack(np.broadcast_arrays(x, z, how)), width, filled)
 
 
-def _body_strokes(kind: Kind, heights: Array, left: float, right: float, *, leaning: bool) -> list[Stroke]:
+def _body_strokes(
+    kind: Kind, heights: Array, left: float, right: float, wide: Array | None, *, leaning: bool
+) -> list[Stroke]:
     """Return the lines above the base; a column beside a frame on a hinge, which its floors hold, if some lean."""
     near, top = min(-left, right), heights[-1]
     if kind == "block":
         return [_stroke([left, right, right, left, left], [0.0, 0.0, top, top, 0.0], 2.0, filled=True)]
+    if wide is not None:
+        around = np.concatenate([heights, heights[::-1], heights[:1]])
+        return [_stroke(np.concatenate([-wide, wide[::-1], -wide[:1]]), around, 2.0, filled=True)]
     if kind != "frame":
         mass = [_stroke([-_MASS * top, _MASS * top], top, 12.0)] if kind == "mast" else []
         return [_stroke(0.0, heights, 5.0), *mass]
