@@ -210,7 +210,7 @@ class Task:
 
     @property
     def size(self) -> tuple[float | None, ...] | None:
-        """What the work depends on beside the model; None if it depends on every sample."""
+        """The numbers that the work depends on beside the model; None if it depends on every sample."""
         return None if self.cost_model.flow else (self.record.size, self.dt, self.free_vibration, self.history)
 
     def work(self) -> EstimatedWork:

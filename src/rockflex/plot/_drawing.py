@@ -1,4 +1,4 @@
-"""What stands there, to scale and with its dimensions: at rest, or at an instant of a response."""
+"""Drawings of structures to scale, with their dimensions: at rest, or at an instant of a response."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

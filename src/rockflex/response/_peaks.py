@@ -124,7 +124,7 @@ class NamedPeakRows:
 
 
 class TrackedPeaks(NamedTuple):
-    """What a run tracks: largest magnitudes, and, on springs, largest values."""
+    """The peaks that a run tracks: largest magnitudes, and, on springs, largest values."""
 
     peaks: NamedPeakRows
     extremes: NamedPeakRows | None
