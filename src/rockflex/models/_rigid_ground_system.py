@@ -30,8 +30,8 @@ CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
 def may_stack(model: RockingModel) -> bool:
     """Return whether a model can be in a stack: at its impacts, if any, the state is multiplied by a matrix."""
     p = model.properties
-    numbers = np.abs((*p.omega, p.i_theta, p.l0r, p.m_tot, p.half_width))
-    usual = bool((numbers > SMALL).all() and (numbers < LARGE).all())  # what overflows is told of one model
+    numbers = [*p.omega.tolist(), p.i_theta, p.l0r, p.m_tot, p.half_width]
+    usual = all(SMALL < abs(each) < LARGE for each in numbers)  # what overflows is told of one model
     rules = [(side, rule_of_law(model.law, side)) for side in (RIGHT, LEFT) if model.lifts]
     return usual and all(rule is not None and rule.fixed_share(p, side) == 0.0 for side, rule in rules)
 

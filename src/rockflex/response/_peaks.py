@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import compress
 from typing import Any, NamedTuple
 
@@ -101,26 +102,35 @@ class NamedPeakRows:
 
     @classmethod
     def of(
-        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: Mapping[str, int] | None = None
+        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: tuple[str, ...] = ()
     ) -> "NamedPeakRows":
-        """Return the rows of parts in their order, after other places.
+        """Return the rows of parts in their order, after other names.
 
         A part has a tuple with the name of each row, or one name for all its rows.
         """
-        places: dict[str, int | slice] = dict(before or {})
-        first = len(places)
-        for name, part in parts:
-            end = first + len(part)
-            if isinstance(name, str):
-                places[name] = slice(first, end)
-            else:
-                places |= zip(name, range(first, end), strict=True)
-            first = end
+        places = _places_of_rows(tuple([(name, len(part)) for name, part in parts]), before)
         return cls(joined_quantities([part for _, part in parts]), places)
 
     def named(self, peaks: Array) -> dict[str, Array]:
         """Return peaks, or their times, by name: from the shape (..., F), of one name (...), or (k, ...) of a slice."""
         return {name: peaks.T[place] for name, place in self.places.items()}
+
+
+@lru_cache(maxsize=256)
+def _places_of_rows(
+    parts: tuple[tuple[tuple[str, ...] | str, int], ...], before: tuple[str, ...]
+) -> Mapping[str, int | slice]:
+    """Return the places of the rows of parts by name, of which each has a number of rows."""
+    places: dict[str, int | slice] = {name: place for place, name in enumerate(before)}
+    first = len(before)
+    for name, count in parts:
+        end = first + count
+        if isinstance(name, str):
+            places[name] = slice(first, end)
+        else:
+            places |= zip(name, range(first, end), strict=True)
+        first = end
+    return places
 
 
 class TrackedPeaks(NamedTuple):
@@ -165,7 +175,7 @@ def tracked_quantities(
     if floors and p.floors is not None:
         names = FLOORS[:-1] if model.integrated else FLOORS
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
-    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
+    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], ("rotation",))  # the engine puts the rotation first
     return TrackedPeaks(peaks, NamedPeakRows.of(most) if most else None)
 
 
