@@ -71,7 +71,7 @@ class ImpactLaw(Protocol):
 
 @dataclass(frozen=True)
 class LandingRule:
-    """What a law of the package says of the landing on one side, for its `after` and for the compiled models.
+    """The landing on one side by a law of the package, for its `after` and for the compiled models.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What stands there, to scale and with its dimensions: at rest, or at an instant of a response."""
+"""Drawings of structures to scale, with their dimensions: at rest, or at an instant of a response."""
 
 import math
 from collections.abc import Iterable, Sequence

@@ -139,7 +139,7 @@ def _places_of_rows(
 
 
 class TrackedPeaks(NamedTuple):
-    """What a run tracks: largest magnitudes, and, on springs, largest values."""
+    """The peaks that a run tracks: largest magnitudes, and, on springs, largest values."""
 
     peaks: NamedPeakRows
     extremes: NamedPeakRows | None

@@ -69,7 +69,7 @@ FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
 }
-"""What the page begins with: a pier that rocks."""
+"""The structure of the first screen: a pier that rocks."""
 
 
 def forms_of_structures() -> dict[str, Any]:
