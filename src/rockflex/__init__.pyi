@@ -136,6 +136,8 @@ from .structure import Frame as Frame
 from .structure import FrictionDamper as FrictionDamper
 from .structure import GapBar as GapBar
 from .structure import Ground as Ground
+from .structure import Joint as Joint
+from .structure import Jointed as Jointed
 from .structure import Leaning as Leaning
 from .structure import LumpedMasses as LumpedMasses
 from .structure import LumpedStructure as LumpedStructure
@@ -145,6 +147,7 @@ from .structure import MultilinearBar as MultilinearBar
 from .structure import OneSided as OneSided
 from .structure import PinnedBeam as PinnedBeam
 from .structure import Pivot as Pivot
+from .structure import Podium as Podium
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
 from .structure import RockingProperties as RockingProperties

@@ -21,6 +21,7 @@ from rockflex.response._peaks import (
     ROTATIONS,
     TrackedPeaks,
     balance_ratio,
+    column_pull,
     element_extremes,
     element_peaks,
     largest_edge_moves,
@@ -59,11 +60,13 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
         if solution.overturned
         else float(final[model.layout.rotation]) - model.rest.rotation,
         balance_ratio=float(balance_ratio(model, right, left)),
+        max_joint_rotation=float(np.max(peaks.get("joint_rotation", 0.0))),
         max_slip=float(peaks.get("slip", 0.0)),
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         max_edge_uplift=uplift,
         max_edge_settlement=settlement,
         leaning_push=float(leaning_push(p, rotation, known["max_base_shear"])),
+        column_pull=column_pull(p, known["max_base_moment"]),
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
@@ -196,9 +199,15 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
+        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
+        "column_pull": np.array(
+            [
+                column_pull(each.properties, float(moment))
+                for each, moment in zip(models, peaks["base_moment"], strict=True)
+            ]
+        ),
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "guarded_impacts": solutions.guarded_impacts,

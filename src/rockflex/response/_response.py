@@ -72,6 +72,14 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 percent=100.0 * peaks["leaning_push"],
             )
         )
+    if peaks["column_pull"] > 1.0:
+        found.append(
+            translated(
+                "The base moment of the building reaches {ratio:.3g} times that which pulls an outer column of the "
+                "podium up: the column would lift off, and the building turn. What follows is to be read with care.",
+                ratio=peaks["column_pull"],
+            )
+        )
     if peaks["may_fall"]:
         found.append(
             translated(
@@ -279,11 +287,13 @@ class Response(HtmlTable, Value):
     tendon_overload: bool
     residual_rotation: float
     balance_ratio: float
+    max_joint_rotation: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float
     max_edge_settlement: float
     leaning_push: float
+    column_pull: float
     n_uplifts: int
     n_impacts: int
     guarded_impacts: float
@@ -325,6 +335,7 @@ class Response(HtmlTable, Value):
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
     element_state = _OfHistory[Array]()
+    joint_rotation = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()

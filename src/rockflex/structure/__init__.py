@@ -13,11 +13,14 @@ from rockflex.structure._elements import FrictionDamper, Tendon, ViscousDamper, 
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._joint import Joint
+from rockflex.structure._jointed import Jointed
 from rockflex.structure._law_bars import FlagShapedBar, GapBar, MultilinearBar
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
 from rockflex.structure._participation import rocking_properties
 from rockflex.structure._pivot import Pivot
+from rockflex.structure._podium import Podium
 from rockflex.structure._rigid_bodies import rigid_block, rocking_frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
@@ -45,6 +48,8 @@ __all__ = [
     "FrictionDamper",
     "GapBar",
     "Ground",
+    "Joint",
+    "Jointed",
     "Leaning",
     "LumpedMasses",
     "LumpedStructure",
@@ -54,6 +59,7 @@ __all__ = [
     "OneSided",
     "PinnedBeam",
     "Pivot",
+    "Podium",
     "Restrained",
     "RitzShapes",
     "RockingProperties",

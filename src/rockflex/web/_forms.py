@@ -73,12 +73,19 @@ def material_name(given: Mapping[str, Any]) -> str:
     return next((each["title"] for each in MATERIALS if all(given.get(name) == each[name] for name in values)), "")
 
 
-OF_WHOLE = ("eccentricity", "one_sided", "leaning_masses", "stories")  # fields of every kind of structure
+OF_WHOLE = (
+    "eccentricity",
+    "one_sided",
+    "leaning_masses",
+    "stories",
+    "podium",
+    "joints",
+)  # fields of every kind of structure
 FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
 }
-"""What the page begins with: a pier that rocks."""
+"""The structure of the first screen: a pier that rocks."""
 
 
 def forms_of_structures() -> dict[str, Any]:

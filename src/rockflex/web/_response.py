@@ -80,6 +80,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 
 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
+MAX_JOINTS_DRAWN = 3  # joints above the base whose rotations are curves, at most
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
 CURVES = ("rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement")
 MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `CostModel`
@@ -143,7 +144,7 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
         return {"note": " ".join(error.errors.values())}
     if simple:
         displacement = motion.sd(2.0 * math.pi / float(p.omega[0]), float(p.zeta[0]))
-        moment = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2) * displacement
+        moment = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2) * displacement
         top = None if p.top_height is None else abs(float(p.top_ordinate[0])) * displacement
     elif p.n_modes:
         with suppress(Refusal):
@@ -242,7 +243,7 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     """Suggest a yield displacement in m, beyond the uplift of the base and below the demand on a fixed base."""
     if not p.n_modes:
         return None
-    stiffness = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2)
+    stiffness = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2)
     held = 1.5 * p.resisting_moment / stiffness
     fixed = 0.5 * motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
@@ -267,8 +268,7 @@ def response_curves(
         points *= 2  # loops need more points than curves over time
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     kept = np.unique(np.concatenate((envelope_indices(list(curves.values()), points), events, events + 1)))
-    modal = history.modal_displacement[kept]
-    drawn = modal @ built.outline.shapes[:, : modal.shape[1]].T
+    drawn = built.outline.sway(history.modal_displacement[kept], history.joint_rotation[kept])
     return {
         "label": response.model,
         "status": response.status,
@@ -309,9 +309,10 @@ def _times_of_yielding(history: History) -> dict[str, list[Any]] | None:
 def base_motion_curves(history: History) -> dict[str, Array]:
     """Return how the base of a history moves on its ground, in m, shapes (n_states,); none on rigid ground.
 
-    The slip if it can slide, and on springs the heave and the rise of the edges.
+    The slip if it can slide, and on springs the heave and the rise of the edges; and the rotations in rad of up to
+    three joints above the base.
     """
-    curves: dict[str, Array] = {}
+    curves = {f"joint_{k}": each for k, each in enumerate(history.joint_rotation.T[:MAX_JOINTS_DRAWN], 1)}
     layout = history.model.layout
     if layout.slip >= 0:
         curves["slip"] = history.slip
