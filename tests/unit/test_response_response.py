@@ -25,7 +25,8 @@ from rockflex.response._respond import response_of_solution
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 QUANTITIES = (
-    "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
+    "time", "sensitivity", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement",
+    "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
     "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
