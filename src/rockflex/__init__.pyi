@@ -137,6 +137,8 @@ from .structure import Frame as Frame
 from .structure import FrictionDamper as FrictionDamper
 from .structure import GapBar as GapBar
 from .structure import Ground as Ground
+from .structure import Joint as Joint
+from .structure import Jointed as Jointed
 from .structure import Leaning as Leaning
 from .structure import LumpedMasses as LumpedMasses
 from .structure import LumpedStructure as LumpedStructure

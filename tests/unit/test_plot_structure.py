@@ -157,7 +157,7 @@ def test_the_notes_say_what_stands_there():
     fuses = [rf.YieldingDissipator(2e7, 200e3, position=x) for x in (-1.0, 1.0)]
     texts = notes(rf.plot_structure(rf.Restrained(frame, [rf.Tendon(500e3, 20e6), *fuses])).axes[0])
     assert "Tendon, 500 kN, 20 MN/m, x = 0 m" in texts
-    assert "2 × Yielding dissipator, 20 MN/m, 200 kN, x = ±1 m" in [text.replace("\n", " ") for text in texts]
+    assert "2 × Fuse, 20 MN/m, 200 kN, x = ±1 m" in [text.replace("\n", " ") for text in texts]
     assert {"5 × 3 m", "15 m", f"B = {frame.half_width:.3g} m", "pivot"} <= set(texts)
     assert "5 × 40\u202f000 kg" in texts
     texts = notes(rf.plot_structure(STRUCTURES["leaning, yielding, eccentric"]).axes[0])
@@ -239,7 +239,7 @@ def test_elements_have_the_colour_of_their_state():
     at = float(times[rise : rise + 2].mean())
     figure = rf.plot_structure(frame, response=response, at=at)
     assert RED in colors(figure)
-    (text,) = (text for text in notes(figure.axes[0]) if text.startswith("Yielding"))
+    (text,) = (text for text in notes(figure.axes[0]) if text.startswith("Fuse"))
     assert text.replace("\n", " ").endswith("yielding")
     before = rf.plot_structure(frame, response=response, at=float(times[0]))
     assert RED not in colors(before)

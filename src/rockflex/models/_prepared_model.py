@@ -20,7 +20,8 @@ from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.models._landing import GUARDED, GainsEnergyError
-from rockflex.models._linear_system import LinearSystemBase, linear_system_base, linear_system_of
+from rockflex.models._linear_bases import linear_system_base
+from rockflex.models._linear_system import LinearSystemBase, linear_system_of
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._nonlinear_system import nonlinear_system_key, states_with_branch_codes
 from rockflex.models._phase import Key

@@ -200,10 +200,15 @@ class SpringModel(RockingModel):
         rows[:, self.layout.heave], rows[:, self.layout.rotation] = 1.0, -self.springs.positions
         return rows
 
-    def stretch(self, place: int, side: int) -> Array:
+    @property
+    def moving_places(self) -> tuple[int, ...]:
+        """The places of all elements."""
+        return tuple(range(len(self.elements)))
+
+    def stretch(self, place: int, stance: int | Key) -> Array:
         """Return the elongation of an element in m as a row over `stretched` states, shape (C,): zero at rest."""
         position, layout = self.elements[place].position, self.layout
-        row = super().stretch(place, side)
+        row = super().stretch(place, stance)
         if position is not None:
             row[layout.heave], row[layout.rotation] = 1.0, -position
         rest = float(self.turned(self.rest.rotation))

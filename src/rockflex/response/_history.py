@@ -334,6 +334,12 @@ class History(Value):
         return self.states[:, RISE]
 
     @property
+    def joint_rotation(self) -> Array:
+        """Rotation of each joint above the base in rad, relative to what is below it, shape (n_states, n_joints)."""
+        layout = self.model.layout
+        return self.states[:, [HEADER + place for place in layout.rotations[1:]]]
+
+    @property
     def slip(self) -> Array:
         """Displacement of the base along the ground in m, positive to the right; zero if it cannot slide."""
         return self._of_base(self.model.layout.slip)

@@ -18,6 +18,7 @@ from rockflex.models._named_quantities import (
     element_moves,
     element_speeds,
     floor_quantities,
+    joint_rotations,
     quantities,
     rotation_by_side,
     rotation_rate_by_side,
@@ -155,6 +156,8 @@ def tracked_quantities(
     if tracked_elements(model):
         most.append(("element_moves", element_moves(model)))
         parts.append(("element_speeds", element_speeds(model)))
+    if model.layout.n_joints:
+        parts.append(("joint_rotation", joint_rotations(model)))
     if model.springs is None and model.lifts and any(each.rate_dependent for each in under):
         parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
@@ -235,6 +238,7 @@ def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks)
         if solution.overturned
         else float(final[model.layout.rotation]) - model.rest.rotation,
         "balance_ratio": float(balance_ratio(model, right, left)),
+        "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
         "max_slip": float(peaks.get("slip", 0.0)),
         "residual_slip": float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         "max_edge_uplift": uplift,
@@ -320,7 +324,7 @@ def element_extremes(model: RockingModel, peaks: Mapping[str, Array]) -> list[El
     """Return the extremes of the elements of a run, and then those of the stories that yield."""
     tracked = tracked_elements(model)
     known = dict(zip(tracked, _extremes_of(model, peaks), strict=True)) if tracked else {}
-    if model.springs is not None:
+    if len(known) == len(model.elements):
         return [known[place] for place in range(len(model.elements))]
     swing = peaks.get("rotation_rate_by_side", np.zeros(1))  # one value if the sides do not differ
     under = extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))

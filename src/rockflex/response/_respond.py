@@ -177,7 +177,7 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
+        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
         "n_uplifts": solutions.n_uplifts,

@@ -280,6 +280,7 @@ class Response(HtmlTable, Value):
     tendon_overload: bool
     residual_rotation: float
     balance_ratio: float
+    max_joint_rotation: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float
@@ -326,6 +327,7 @@ class Response(HtmlTable, Value):
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
     element_state = _OfHistory[Array]()
+    joint_rotation = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()

@@ -13,6 +13,8 @@ from rockflex.structure._elements import FrictionDamper, Tendon, ViscousDamper, 
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
 from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._joint import Joint
+from rockflex.structure._jointed import Jointed
 from rockflex.structure._law_bars import FlagShapedBar, GapBar, MultilinearBar
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
@@ -45,6 +47,8 @@ __all__ = [
     "FrictionDamper",
     "GapBar",
     "Ground",
+    "Joint",
+    "Jointed",
     "Leaning",
     "LumpedMasses",
     "LumpedStructure",

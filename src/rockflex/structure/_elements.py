@@ -243,7 +243,7 @@ class YieldingDissipator(BaseElement):
     (True, 5.89)
     """
 
-    title: ClassVar[str] = "Yielding dissipator"
+    title: ClassVar[str] = "Fuse"
     symbol: ClassVar[str] = "fuse"
     fuse: ClassVar[bool] = True
 

@@ -26,6 +26,7 @@ from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._elements import Tendon, are_elements_symmetric, base_element_tuple, tendons_among
+from rockflex.structure._joint import JointAbove
 from rockflex.structure._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side
 from rockflex.structure._rocking_checks import (
     SUM_TOLERANCE,
@@ -224,6 +225,11 @@ class RockingProperties(HtmlTable, Value):
         ),
     ]
 
+    joints: Annotated[
+        tuple[JointAbove, ...],
+        Described("joints above the base at which it rocks, too", in_file=False, note="See `Jointed`."),
+    ]
+
     def __init__(
         self,
         omega: ArrayLike,
@@ -245,6 +251,7 @@ class RockingProperties(HtmlTable, Value):
         stories: Iterable[YieldingStory] = (),
         restitution: float | None = None,
         opens: Literal["both", "right", "left"] = "both",
+        joints: Iterable[JointAbove] = (),
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = {"i_theta": i_theta, "l0r": l0r, "m_tot": m_tot, "half_width": half_width}
@@ -266,6 +273,7 @@ class RockingProperties(HtmlTable, Value):
             stories=checked_stories(stories, floors, modes["omega"].size),
             restitution=checked_restitution(restitution, opens, modes["omega"].size),
             opens=opens,
+            joints=tuple(joints),
         )
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":
@@ -479,4 +487,5 @@ class RockingProperties(HtmlTable, Value):
             zeta=self.zeta[:k],
             floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
             stories=self.stories if k else (),
+            joints=tuple(each.truncated(k) for each in self.joints),
         )

@@ -27,6 +27,7 @@ from rockflex.foundation.language import CATALOGUES, Language, use_language
 from rockflex.foundation.units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
 from rockflex.response._outputs import HISTORY, OUTPUTS, Output
+from rockflex.structure._outline import DARK_ELEMENT_COLORS, ELEMENT_COLORS
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
@@ -404,6 +405,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         Route("/api/file/{what}", server.make, methods=["POST"]),
         Route("/api/file/{token}", server.making),
         Route("/api/file/{token}/content", server.made),
+        Route("/static/elements.css", _element_colors),
         Mount("/static", StaticFiles(directory=STATIC)),
         Mount("/languages", StaticFiles(directory=CATALOGUES)),
     ]
@@ -419,6 +421,15 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
 
 async def _page_html(_: Request) -> Response:
     return FileResponse(STATIC / "index.html")
+
+
+async def _element_colors(_: Request) -> Response:
+    themes = {":root": ELEMENT_COLORS, ':root[data-theme="dark"]': DARK_ELEMENT_COLORS}
+    rules = (
+        f"{theme} {{ {' '.join(f'--{name}: {color};' for name, color in colors.items())} }}\n"
+        for theme, colors in themes.items()
+    )
+    return Response("".join(rules), media_type="text/css")
 
 
 def _answer_about_page() -> dict[str, Any]:

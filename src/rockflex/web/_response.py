@@ -76,6 +76,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 
 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
+MAX_JOINTS_DRAWN = 3  # joints above the base whose rotations are curves, at most
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
 CURVES = ("rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement")
 MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `CostModel`
@@ -245,8 +246,7 @@ def response_curves(
         points *= 2  # loops need more points than curves over time
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     kept = np.unique(np.concatenate((envelope_indices(list(curves.values()), points), events, events + 1)))
-    modal = history.modal_displacement[kept]
-    drawn = modal @ built.outline.shapes[:, : modal.shape[1]].T
+    drawn = built.outline.sway(history.modal_displacement[kept], history.joint_rotation[kept])
     return {
         "label": response.model,
         "status": response.status,
@@ -264,9 +264,10 @@ def response_curves(
 def base_motion_curves(history: History) -> dict[str, Array]:
     """Return how the base of a history moves on its ground, in m, shapes (n_states,); none on rigid ground.
 
-    The slip if it can slide, and on springs the heave and the rise of the edges.
+    The slip if it can slide, and on springs the heave and the rise of the edges; and the rotations in rad of up to
+    three joints above the base.
     """
-    curves: dict[str, Array] = {}
+    curves = {f"joint_{k}": each for k, each in enumerate(history.joint_rotation.T[:MAX_JOINTS_DRAWN], 1)}
     layout = history.model.layout
     if layout.slip >= 0:
         curves["slip"] = history.slip

@@ -11,6 +11,7 @@ from rockflex.fragility._limit_states import NOMINAL, ROCKING
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
+from rockflex.structure._jointed import joints_at
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.studies._prepared_case import yielding_model_labels
@@ -247,6 +248,9 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
+    if entry.joints is not None:
+        joints = ", ".join(_python_call("Joint", vars(each)) for each in joints_at(**entry.joints.model_dump()))
+        lines.append(f"structure = rf.Jointed(structure, [{joints}])")
     if entry.eccentricity:
         lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
     if entry.one_sided is not None:

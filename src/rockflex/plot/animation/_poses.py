@@ -192,7 +192,7 @@ def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Arra
         rotation=at.rotation if model.lifts else still,
         slip=at.slip if model.lifts else still,
         heave=at.heave if sprung else still,
-        sway=at.modal_displacement @ outline.shapes.T,
+        sway=outline.sway(at.modal_displacement, at.joint_rotation),
         rise=at.edge_uplift if model.lifts else np.zeros((times.size, 2)),
         uplifted=np.asarray(at.uplifted) if model.lifts else np.zeros(times.size, bool),
         sliding=running & (np.abs(at.slip_velocity) > _MIN_SLIP_SPEED) if model.lifts else np.zeros(times.size, bool),

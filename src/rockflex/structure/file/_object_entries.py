@@ -11,7 +11,7 @@ from rockflex.structure.file._object_tables import CLASS, arguments_in_table
 from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_tables import PROFILES
 
-_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "OneSided", "YieldingStories")
+_WRAPPERS = ("Restrained", "Eccentric", "Jointed", "Leaning", "OneSided", "YieldingStories")
 
 
 def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
@@ -49,6 +49,8 @@ def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
         inner["leaning_masses"] = rest["masses"]
     elif name == "YieldingStories":
         inner["stories"] = rest
+    elif name == "Jointed":
+        inner["joints"] = {f"{key}s": [each[key] for each in rest["joints"]] for key in ("height", "half_width")}
     elif name == "OneSided":
         inner["one_sided"] = rest
     elif name == "RockingProperties" and _is_block(rest):
@@ -62,7 +64,7 @@ def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
                 z, rest[key] = rest[key]
                 if rest.setdefault("z", z) != z:
                     raise ValueError("a beam whose quantities vary at other heights each")
-        left = ("floors", *([] if rest.get("stories") else ["stories"]))
+        left = ("floors", "joints", *([] if rest.get("stories") else ["stories"]))
         inner[_kind_made(KINDS, table)] = {key: each for key, each in rest.items() if key not in left}
     return inner
 

@@ -14,6 +14,7 @@ from rockflex.foundation.schema import Eccentricity
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
+from rockflex.structure._jointed import Jointed, joints_at
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
 from rockflex.structure._outline import has_shapes
@@ -27,9 +28,11 @@ from rockflex.structure.file._toml_table import TomlTable, table_of
 _TABLE_KEY = Described("a table", form=PLAIN)
 if TYPE_CHECKING:
     StoriesTable = TomlTable
+    JointsTable = TomlTable
     OneSidedTable = TomlTable
 else:
     StoriesTable = table_of(YieldingStories, TomlTable, __name__)
+    JointsTable = table_of(joints_at, TomlTable, __name__)
     OneSidedTable = table_of(OneSided, TomlTable, __name__)
 
 
@@ -66,6 +69,8 @@ class StructureEntry(_OfKinds):
         In kg, of each floor; None if all mass stands on the base.
     stories : StoriesTable or None
         None if no story yields.
+    joints : JointsTable or None
+        None if it rocks at its base alone.
     eccentricity : float or None
         In m; None in the middle of the base.
     one_sided : OneSidedTable or None
@@ -83,6 +88,10 @@ class StructureEntry(_OfKinds):
     stories: Annotated[
         StoriesTable | None,
         Described("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
+    ] = None
+    joints: Annotated[
+        JointsTable | None,
+        Described("a table", label="Joints above the base", form=PLAIN, page="where it rocks besides its base"),
     ] = None
     eccentricity: Eccentricity = None
     one_sided: Annotated[
@@ -144,6 +153,8 @@ class StructureEntry(_OfKinds):
             built = _wrapped("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
         if (stories := self.stories) is not None:
             built = _wrapped("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
+        if (joints := self.joints) is not None:
+            built = _wrapped("joints", lambda: Jointed(_floors_of(built), joints_at(**joints.model_dump())))
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
@@ -205,6 +216,7 @@ class StructureEntry(_OfKinds):
         """Return the values of the structure's table, and everything else that is given, but for the name."""
         more: dict[str, Any] = {} if self.leaning_masses is None else {"leaning_masses": self.leaning_masses}
         more |= {"stories": self.stories.model_dump()} if self.stories else {}
+        more |= {"joints": self.joints.model_dump()} if self.joints else {}
         more |= {"eccentricity": self.eccentricity} if self.eccentricity else {}
         more |= {"one_sided": self.one_sided.model_dump()} if self.one_sided else {}
         more |= {"elements": [each.describe() for each in self.elements]} if self.elements else {}
@@ -214,8 +226,8 @@ class StructureEntry(_OfKinds):
 def _floors_of(built: Built) -> Structure:
     if isinstance(built, RockingProperties):
         raise InputError(
-            "Leaning masses and stories that yield need floors, which a [properties] or [block] table does not have. "
-            "Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key leaning_mass.",
+            "Leaning masses, stories that yield and joints need floors, which a [properties] or [block] table does not "
+            "have. Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key leaning_mass.",
             field="structure",
         )
     return built
@@ -225,6 +237,6 @@ def _wrapped(key: str, make: Callable[[], Built]) -> Built:
     try:
         return make()
     except InputError as error:
-        place = f"[{key}]" if key in ("stories", "one_sided") else key
+        place = f"[{key}]" if key in ("stories", "joints", "one_sided") else key
         inner = key if error.field in ("", "masses", "structure") or key == "leaning_masses" else f"{key}.{error.field}"
         raise InputError(str(error), place=place, field=inner) from error

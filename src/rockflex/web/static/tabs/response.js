@@ -17,10 +17,12 @@ import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, o
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
+const JOINTS = [1, 2, 3].map((k) => [`joint_${k}`, `{model} ${k}`]);
 const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
 // Name, output, title, height, and the curves of each model where there are several.
 const PANELS = [
   ["rotation", "rotation", t("Rotation"), 150],
+  ["joints", "joint_rotation", t("Rotation of joints above the base"), 118, JOINTS],
   ["slip", "slip", t("Slip of the base"), 118],
   ["edges", "edge_uplift", t("Rise of the edges"), 118, EDGES],
   ["displacement", "total_top_displacement", t("Displacement of the top"), 118],
@@ -32,7 +34,7 @@ const DISPLACEMENTS = [
   ["total_top_displacement", t("relative to the ground")],
   ["top_displacement", t("relative to the rotating base")],
 ];
-const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
+const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force", ...JOINTS.map(([key]) => key)];
 const FORCES = ["base_moment", "base_shear"]; // which a rigid block has not
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [

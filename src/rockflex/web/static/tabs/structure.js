@@ -136,7 +136,11 @@ export default function structureTab(app) {
     };
     const [path, value] = [`structure.${spec.name}`, app.state.structure[spec.name]];
     const strength = () => Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2));
-    const start = () => (spec.name === "stories" ? { strengths: strength(), post_yield_ratio: 0.05 } : {});
+    const starts = {
+      stories: () => ({ strengths: strength(), post_yield_ratio: 0.05 }),
+      joints: () => ({ heights: [Number((0.5 * (view?.heights.at(-1) ?? 10)).toPrecision(2))], half_widths: view?.half_width ?? 1 }),
+    };
+    const start = starts[spec.name] ?? (() => ({}));
     return spec.type === "table" ? tableGroup(path, spec, value, start, change) : tableField(path, spec, value, change);
   }
 
