@@ -148,6 +148,7 @@ from .structure import MultilinearBar as MultilinearBar
 from .structure import OneSided as OneSided
 from .structure import PinnedBeam as PinnedBeam
 from .structure import Pivot as Pivot
+from .structure import Podium as Podium
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
 from .structure import RockingProperties as RockingProperties

@@ -33,7 +33,12 @@ QUANTITIES = (
     "total_floor_displacement", "element_force", "element_elongation", "element_energy", "element_state",
     "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
-KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}
+KINDS = {
+    "energy": "rf.EnergyLedger",
+    "sensitivity": "rf.Sensitivity",
+    "required_friction": "float",
+    "uplifted": "NDArray[np.bool_]",
+}
 METHODS = (
     "required_friction_excluding_impacts",
     "sliding_time",

@@ -1,4 +1,4 @@
-"""What is known of an argument, said once, where the argument is: words, unit, rule, range and note.
+"""Descriptions of arguments, said once, where the argument is: words, unit, rule, range and note.
 
     height: Annotated[float, Described("the height above the base", "m", rule="positive", low=0.01, high=2000.0)]
 
@@ -29,7 +29,7 @@ Judge = Callable[[Any], Any]
 
 @dataclass(frozen=True)
 class Described:
-    """What is known of an argument, inside ``Annotated``; its name, type and default are those of the argument.
+    """The description of an argument, inside ``Annotated``; its name, type and default are those of the argument.
 
     Attributes
     ----------

@@ -127,7 +127,7 @@ class InitialStateSchema:
 
 
 class ReportKeys:
-    """What the head of a report says."""
+    """The head of a report."""
 
     title: Annotated[
         str | None, Described("the heading of the report, in quotes", form=PLAIN, flag="report_title", metavar="TEXT")

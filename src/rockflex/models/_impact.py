@@ -71,7 +71,7 @@ class ImpactLaw(Protocol):
 
 @dataclass(frozen=True)
 class LandingRule:
-    """What a law of the package says of the landing on one side, for its `after` and for the compiled models.
+    """The landing on one side by a law of the package, for its `after` and for the compiled models.
 
     Parameters
     ----------
@@ -102,6 +102,8 @@ class LandingRule:
 
     def share(self, properties: RockingProperties, side: int, modal_velocity: Array, displacement: Array) -> float:
         """Return θ'_a/θ'_b where θ'_b = -side; below zero where the guard acts."""
+        if self.ratio is not None and not self.guarded:
+            return self.ratio
         p, old, new = properties, properties.pivot(side), properties.pivot(-side)
         lean, square = float(p.effective_mass @ displacement), float(p.effective_mass @ displacement**2)
         before = old.i_theta - 2.0 * side * old.arm * lean + square
@@ -112,8 +114,6 @@ class LandingRule:
             share = 1.0 - side * (old.arm + new.arm) * (side * p.m_tot * new.arm + lean) / (after - free)
             if not self.guarded:
                 return max(share, 0.0)
-        elif not self.guarded:
-            return share
         flow = -side * float((p.effective_mass * p.effective_height) @ modal_velocity)
         return share if 0.5 * (before - share**2 * after) + (1.0 - share) * flow >= 0.0 else -1.0
 

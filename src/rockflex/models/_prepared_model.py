@@ -30,12 +30,13 @@ from rockflex.models._rigid_ground_system import may_stack, system_on_rigid_grou
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._run_failures import explaining_engine_failures, failure_of_limit, failure_of_run, failure_of_step
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._work import SEARCH, CostModel, Task, WorkGate, cost_model_of
+from rockflex.models._work import SEARCH, CostModel, Task, cost_model_of
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 256  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
+SIZES = 64  # of runs whose work has been checked, at most
 COUNTED = ("uplift", "impact", GUARDED)
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
@@ -91,7 +92,7 @@ class PreparedModel:
                 "simulated. Keep fewer: the highest ones move nothing.",
                 field="model",
             )
-        self.place, self.gate = 0, WorkGate()
+        self.place, self._accepted = 0, set[tuple[object, ...]]()
         self.n_peaks = 1 + len(quantities)
 
     @cached_property
@@ -144,14 +145,28 @@ class PreparedModel:
         if self.model.integrated:
             return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
-        free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
+        free = min([p.pivot(side).i_theta for side in self.model.sides[1:]], default=np.inf) - levers.sum()
         # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
-        fades = float((drag * (1.0 + levers / free)).sum())
+        fades = float(drag @ (1.0 + levers / free))
         return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
         return Task(self.model, self.cost_model, run.acceleration, dt, free_vibration, history, run.scale)
+
+    def check_work(
+        self, run: Excitation, dt: float, free_vibration: float | None, *, history: bool, limit: float | None
+    ) -> None:
+        """Raise `WorkLimitError` as `Task.check` does; of runs that are equally much work only the first is asked."""
+        # With a hysteresis that flows, the work depends on every sample.
+        size = None if self.cost_model.flow else (run.acceleration.size, dt, free_vibration, history, limit)
+        if size in self._accepted:
+            return
+        self.task(run, dt, free_vibration, history=history).check(limit)
+        if size is not None:
+            if len(self._accepted) >= SIZES:
+                self._accepted.clear()
+            self._accepted.add(size)
 
     def join_pool(self, pool: SolverPool, place: int) -> None:
         """Share a pool with other models."""
@@ -299,11 +314,10 @@ def run_all(
         If the runs were stopped from outside.
     """
     first, settles, failures = engines[0], free_vibration is None, dict[int, InputError | SolverError]()
-    tasks = [engine.task(run, dt, free_vibration, history=history) for engine, run in zip(engines, runs, strict=True)]
     begins = [first.at_rest] * len(runs)
-    for place, (engine, task) in enumerate(zip(engines, tasks, strict=True)):
+    for place, (engine, run) in enumerate(zip(engines, runs, strict=True)):
         try:
-            engine.gate.check(task, work_limit)
+            engine.check_work(run, dt, free_vibration, history=history, limit=work_limit)
             if starts is not None:
                 begins[place] = engine.start(starts[place])
         except InputError as error:
@@ -335,7 +349,8 @@ def run_all(
             solver.follow(batch, history)
         except (InputError, SolverError) as error:
             place = allowed[batch.place]
-            failures[place] = engines[place].failure(error, solver, tasks[place], work_limit)
+            task = engines[place].task(runs[place], dt, free_vibration, history=history)
+            failures[place] = engines[place].failure(error, solver, task, work_limit)
             batch.place += 1
     states = first.model_states(cast("list[Key]", solver.keys), batch.places, batch.states)
     found = _ends_of(batch, states, dt, allowed, len(runs), settles=settles)

@@ -106,11 +106,10 @@ class Quantities:
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
 
 
-def _joint_shares(count: int, shares: Mapping[str, ArrayLike]) -> Array:
-    """Return blank weights for the joints of some shares."""
-    return np.zeros(
-        (count, len(OF_JOINTS), max((np.shape(shares[each])[-1] for each in OF_JOINTS if each in shares), default=0))
-    )
+def _joint_shares(count: int, *shares: Mapping[str, ArrayLike]) -> Array:
+    """Return blank weights for the joints of some shares, as many as the most that one names."""
+    most = max([np.shape(given[name])[-1] for given in shares for name in OF_JOINTS if name in given], default=0)
+    return np.zeros((count, len(OF_JOINTS), most))
 
 
 @lru_cache(maxsize=256)
@@ -124,17 +123,17 @@ def collected_quantities(modes: int, shares: Sequence[Share]) -> Quantities:
     """Return one quantity for each pair of kind and shares."""
     count, columns = len(shares), _columns(modes)
     values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
-    joints = [_joint_shares(1, given) for _, given in shares]
+    joints = _joint_shares(count, *(given for _, given in shares))
     for row, shift, joint, (_, given) in zip(values, shifts, joints, shares, strict=True):
         for name, share in given.items():
             if name in OF_JOINTS:
-                joint[0, OF_JOINTS.index(name)] = share
+                joint[OF_JOINTS.index(name), : np.shape(share)[-1]] = share
             elif name in OF_SHIFT:
                 shift[OF_SHIFT.index(name)] = share
             else:
                 row[columns[name]] = share
     kinds = np.array([kind for kind, _ in shares], dtype=np.int64)
-    return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, _beside_one_another(joints), kinds)
+    return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, joints, kinds)
 
 
 def joined_quantities(parts: Sequence[Quantities]) -> Quantities:
@@ -150,6 +149,8 @@ def joined_quantities(parts: Sequence[Quantities]) -> Quantities:
 def _beside_one_another(parts: Sequence[Array]) -> Array:
     """Return the weights of joints of all parts, of which some know none."""
     most = max((part.shape[-1] for part in parts), default=0)
+    if not most:  # as nearly always, where padding would take longer than all else
+        return np.zeros((sum(map(len, parts)), len(OF_JOINTS), 0))
     return np.concatenate(
         [
             np.zeros((0, len(OF_JOINTS), most)),

@@ -13,7 +13,7 @@ from rockflex.structure._rocking import RockingProperties
 @described
 @dataclass(frozen=True)
 class Rebound:
-    """What opens to one side turns back at the wall behind it with a fraction e of its velocity, θ' → -e θ'.
+    """A base that opens to one side turns back at the wall behind it with a fraction e of its velocity, θ' → -e θ'.
 
     It belongs to structures that open to one side (`OneSided`), which take no other law.
     """

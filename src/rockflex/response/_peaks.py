@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import compress
 from typing import Any, NamedTuple
 
@@ -37,6 +38,11 @@ def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> An
     """Return the push Σ l_i g |θ| of leaning columns over the base shear, for largest values of one run or of many."""
     push = properties.leaning_mass * GRAVITY * np.asarray(rotation)
     return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
+
+
+def column_pull(properties: RockingProperties, moment: float) -> float:
+    """Return the base moment of a run in N m over that which first pulls a column up; zero if that is not known."""
+    return 0.0 if properties.columns is None else moment / properties.columns.pull_moment
 
 
 def may_fall(
@@ -101,21 +107,13 @@ class NamedPeakRows:
 
     @classmethod
     def of(
-        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: Mapping[str, int] | None = None
+        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: tuple[str, ...] = ()
     ) -> "NamedPeakRows":
-        """Return the rows of parts in their order, after other places.
+        """Return the rows of parts in their order, after other names.
 
         A part has a tuple with the name of each row, or one name for all its rows.
         """
-        places: dict[str, int | slice] = dict(before or {})
-        first = len(places)
-        for name, part in parts:
-            end = first + len(part)
-            if isinstance(name, str):
-                places[name] = slice(first, end)
-            else:
-                places |= zip(name, range(first, end), strict=True)
-            first = end
+        places = _places_of_rows(tuple([(name, len(part)) for name, part in parts]), before)
         return cls(joined_quantities([part for _, part in parts]), places)
 
     def named(self, peaks: Array) -> dict[str, Array]:
@@ -123,8 +121,25 @@ class NamedPeakRows:
         return {name: peaks.T[place] for name, place in self.places.items()}
 
 
+@lru_cache(maxsize=256)
+def _places_of_rows(
+    parts: tuple[tuple[tuple[str, ...] | str, int], ...], before: tuple[str, ...]
+) -> Mapping[str, int | slice]:
+    """Return the places of the rows of parts by name, of which each has a number of rows."""
+    places: dict[str, int | slice] = {name: place for place, name in enumerate(before)}
+    first = len(before)
+    for name, count in parts:
+        end = first + count
+        if isinstance(name, str):
+            places[name] = slice(first, end)
+        else:
+            places |= zip(name, range(first, end), strict=True)
+        first = end
+    return places
+
+
 class TrackedPeaks(NamedTuple):
-    """What a run tracks: largest magnitudes, and, on springs, largest values."""
+    """The peaks that a run tracks: largest magnitudes, and, on springs, largest values."""
 
     peaks: NamedPeakRows
     extremes: NamedPeakRows | None
@@ -165,7 +180,7 @@ def tracked_quantities(
     if floors and p.floors is not None:
         names = FLOORS[:-1] if model.integrated else FLOORS
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
-    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
+    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], ("rotation",))  # the engine puts the rotation first
     return TrackedPeaks(peaks, NamedPeakRows.of(most) if most else None)
 
 
@@ -244,6 +259,7 @@ def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks)
         "max_edge_uplift": uplift,
         "max_edge_settlement": settlement,
         "leaning_push": float(leaning_push(p, rotation, found["max_base_shear"])),
+        "column_pull": column_pull(p, found["max_base_moment"]),
     }
 
 

@@ -180,6 +180,12 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
+        "column_pull": np.array(
+            [
+                column_pull(each.properties, float(moment))
+                for each, moment in zip(models, peaks["base_moment"], strict=True)
+            ]
+        ),
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "guarded_impacts": solutions.guarded_impacts,

@@ -73,6 +73,14 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 percent=100.0 * peaks["leaning_push"],
             )
         )
+    if peaks["column_pull"] > 1.0:
+        found.append(
+            translated(
+                "The base moment of the building reaches {ratio:.3g} times that which pulls an outer column of the "
+                "podium up: the column would lift off, and the building turn. What follows is to be read with care.",
+                ratio=peaks["column_pull"],
+            )
+        )
     if peaks["may_fall"]:
         found.append(
             translated(
@@ -286,6 +294,7 @@ class Response(HtmlTable, Value):
     max_edge_uplift: float
     max_edge_settlement: float
     leaning_push: float
+    column_pull: float
     n_uplifts: int
     n_impacts: int
     guarded_impacts: float

@@ -127,7 +127,7 @@ class Element(Protocol):
 
 
 class ElementDefaults:
-    """What most elements have in common."""
+    """The answers that most elements share."""
 
     @property
     def stretches(self) -> float | None:
@@ -159,7 +159,7 @@ class ElementDefaults:
 
 
 class WithoutMemory(ElementDefaults):
-    """What is common to elements without an internal variable, most of which have one branch."""
+    """The answers of elements without an internal variable, most of which have one branch."""
 
     @property
     def n_internal(self) -> int:
@@ -383,7 +383,7 @@ class YieldingStoryElement(YieldingElement):
         return whole._replace(stiffness=whole.stiffness - self.stiffness)
 
     def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
-        """What the whole story stores, less ½ k δ²."""
+        """The energy that the whole story stores, less ½ k δ²."""
         elastic = self.stiffness * elongation
         return super().stored_energy(elongation, force + elastic, plastic) - 0.5 * elastic * elongation
 

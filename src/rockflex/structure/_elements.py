@@ -112,7 +112,7 @@ class Tendon(BaseElement):
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not yield, and of one that did."""
+        """The words of a report for one that did not yield, and for one that did."""
         return translated("elastic"), translated("beyond F_y" if self.post_yield_ratio is None else "yielded")
 
     def branched(self) -> Element:
@@ -276,12 +276,12 @@ class YieldingDissipator(BaseElement):
 
     @property
     def words(self) -> str:
-        """What it is called in a sentence."""
+        """Its name in a sentence."""
         return "fuse"
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not yield, and of one that did."""
+        """The words of a report for one that did not yield, and for one that did."""
         return translated("elastic"), translated("yielded")
 
     def branched(self) -> Element:
@@ -427,7 +427,7 @@ class FrictionDamper(BaseElement):
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not slide, and of one that did."""
+        """The words of a report for one that did not slide, and for one that did."""
         return translated("did not slide"), translated("slid")
 
     def branched(self) -> Element:

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 MAX_CASES = 32  # cases kept
 MIN_WEIGHED_BYTES, MAX_TOTAL_BYTES = 8_000_000, 256_000_000  # of the tables of a case that are counted anew, and of all
 
-_cache: OrderedDict[Hashable, tuple[PreparedCase, RockingProperties, RunOptions]] = OrderedDict()
+_cache: OrderedDict[Hashable, tuple[PreparedCase, RockingProperties, RunOptions, int]] = OrderedDict()
 _lock = Lock()
 
 
@@ -74,11 +74,11 @@ def simulate_with_cached_case(
     known = _cached_case(key) if keeps else None
     case = known or options.case(model, properties, history=history, floors=history)
     response = case.run(motion)
-    if keeps and (known is None or case.engine.size > MIN_WEIGHED_BYTES):
+    if keeps and ((size := case.engine.size) > MIN_WEIGHED_BYTES or known is None):
         with _lock:
             # What a key identifies is kept with it, so that no later object can have its place in memory.
-            _cache[key] = case, properties, options
-            while len(_cache) > MAX_CASES or sum(each.engine.size for each, *_ in _cache.values()) > MAX_TOTAL_BYTES:
+            _cache[key] = case, properties, options, size
+            while len(_cache) > MAX_CASES or sum(weight for *_, weight in _cache.values()) > MAX_TOTAL_BYTES:
                 _cache.popitem(last=False)
     return response
 

@@ -9,11 +9,13 @@ import numpy as np
 
 import rockflex as rf
 from rockflex.foundation.arrays import Array
+from rockflex.models._label import parse_model
 from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import WEAKER, RemarkKind, ResampledInterval
 from rockflex.papers.silva_stojadinovic_2024._inputs import MIN_POPULATIONS, SEED, PaperRecords, Piece
 from rockflex.papers.silva_stojadinovic_2024._pair_measures import PairMeasures
 from rockflex.report._document import Remark, ReproducedResult
+from rockflex.studies._prepared_case import RunOptions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -131,8 +133,12 @@ def _sampled_base_shears(records: PaperRecords, _: int) -> "pd.DataFrame":
     suite, rows = _weaker_suite(records), list[dict[str, float]]()
     for pair in range(records.pairs):
         drawn = rf.draw_prototype(records.seed, pair, len(suite))
-        frame = drawn.frame()
-        runs = {name: rf.simulate(frame, suite[drawn.record], model) for name, model in SAMPLED_MODELS.items()}
+        frame, motion = drawn.frame(), suite[drawn.record]
+        cases = {  # `simulate` would look for the peaks of all floors, too
+            name: RunOptions().case(parse_model(model), frame.rocking(), history=True)
+            for name, model in SAMPLED_MODELS.items()
+        }
+        runs = {name: case.run(motion) for name, case in cases.items()}
         if runs["mdof"].status == "rocking" and runs["2dof"].status != "overturned":
             weight = frame.n_stories * frame.story_mass * GRAVITY
             rows.append({"pair": pair, **{name: _sampled_base_shear(run) / weight for name, run in runs.items()}})
