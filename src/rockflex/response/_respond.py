@@ -20,6 +20,7 @@ from rockflex.response._peaks import (
     GLOBAL,
     ROTATIONS,
     TrackedPeaks,
+    column_pull,
     largest_rotations,
     leaning_push,
     may_fall,
