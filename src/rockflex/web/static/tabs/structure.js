@@ -188,17 +188,21 @@ export default function structureTab(app) {
   }
 
   results.append(downloads(app, reports(app, "report", t("Report (HTML)"), t("Report (PDF)"))));
+  let answered = ""; // the state whose answer is shown
+  const inUse = () => JSON.stringify({ ...app.state, tab: "" });
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
     const asked = app.state.structure;
-    if (!fast) results.classList.add("stale");
+    const key = inUse();
+    if (!fast) results.classList.toggle("stale", key !== answered);
     const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
     shown.stale(!answer);
     if (!answer) return shown.quick.refresh();
     shown.set({ ...answer, ...answer.run }, asked);
     if (fast) return;
     results.classList.remove("stale");
+    answered = key;
     view = answer;
     viewed = JSON.stringify(asked);
     if (answer.section.length) known[answer.kind] = answer.section;
@@ -233,7 +237,7 @@ export default function structureTab(app) {
   function refresh(live = false) {
     quick = live;
     if (!live) {
-      results.classList.add("stale");
+      results.classList.toggle("stale", inUse() !== answered);
       form();
       below.refresh();
       kept.refresh();
