@@ -155,13 +155,9 @@ class Stage {
     const past = (time) => time !== null && time !== undefined && time <= this.time;
     const { elements = [], broken = [], stories = [] } = model.yielding ?? {};
     this.view.elements.forEach(({ symbol, ends }, k) => {
-      const between = (tone, more) => {
-        g.strokeStyle = g.fillStyle = color(tone);
-        drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))), 1, more);
-      };
-      const thin = symbol === "tendons"; // and often before a column of its height
-      if (thin) between("bg", 4);
-      between(past(broken[k]) ? "error" : past(elements[k]) ? "lost" : symbol, thin ? 1 : 0);
+      g.strokeStyle = g.fillStyle = color(past(broken[k]) ? "error" : past(elements[k]) ? "lost" : symbol);
+      const more = symbol === "tendons" ? 2 : 0; // thin, and often before a column
+      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))), 1, more);
     });
     g.strokeStyle = color("lost");
     g.lineWidth = 5;
