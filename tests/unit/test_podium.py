@@ -124,3 +124,10 @@ def test_what_is_no_building_is_refused() -> None:
     with pytest.raises(rf.InputError) as caught:
         rf.Podium(BUILDING, 4, 6.0, 4.0, 8e3)
     assert caught.value.field == "column_width"
+
+
+def test_the_drawing_stands_on_its_columns() -> None:
+    figure = rf.plot_structure(PODIUM)
+    drawn = [each for axes in figure.axes for each in (*axes.lines, *axes.patches)]
+    assert len(drawn) > 4
+    rf.plot_structure(rf.Jointed(BUILDING, rf.Joint(3.0, 1.0)))

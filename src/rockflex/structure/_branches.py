@@ -11,7 +11,7 @@ from rockflex.foundation.arrays import Array
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
-BARELY = 1e-12  # m: a tie without initial force goes slack beyond this, so that it does not do so in full contact
+BARELY = 1e-12  # m: what is without force at rest is this far from slack, so that rounding in contact does not matter
 BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 

@@ -211,7 +211,7 @@ def _podium_outline(
     columns = [_stroke(x + around, up, 1.6, how, filled=True) for x in places]
     body = [
         _stroke(each.points[:, 0], each.points[:, 1] + height, each.width, UPRIGHT, filled=each.filled)
-        for each in _body_strokes(kind, heights, -edge, edge, leaning=False)
+        for each in _body_strokes(kind, heights, -edge, edge, None, leaning=False)
     ]
     lifted = np.array([0.0, height, UPRIGHT - BODY])
     held = tuple(

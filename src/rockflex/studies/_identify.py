@@ -53,6 +53,18 @@ class Identification(Value):
         Number of runs with derivatives.
     structure
         The structure with these values; `ground` and `impact` are those of its runs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> weak = rf.one_sine_pulse(amplitude=0.1, period=0.8)
+    >>> floors = rf.simulate(frame, weak).floor_acceleration
+    >>> found = rf.identify(frame, weak, floors, ["period"],
+    ...     observed="floor_acceleration")
+    >>> found.to_frame().columns.tolist()
+    ['value', 'standard_error', 'low', 'high']
     """
 
     parameters: tuple[str, ...]

@@ -46,6 +46,20 @@ class Tornado(Value):
         Numbers of records under which the structure overturns there.
     n_records : int
         Number of records.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0,
+    ...     damping_ratio=0.02)
+    >>> found = rf.tornado(frame, rf.one_sine_pulse(amplitude=3.0, period=0.8),
+    ...     parameters={"period": 0.2})
+    >>> found
+    Tornado(max_rotation over 1 records, 1 parameters)
+    >>> found.to_frame()[["change_low", "change_high"]].round(1)
+               change_low  change_high
+    parameter
+    period           13.6        -16.6
     """
 
     demand: str
