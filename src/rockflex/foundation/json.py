@@ -8,9 +8,13 @@ from typing import Any
 
 import numpy as np
 
+PLAIN = frozenset((str, int, bool, type(None)))
+
 
 def as_json_value(value: Any) -> Any:
     """Return dicts, lists, strings and numbers: NaN becomes None, an infinity "inf" or "-inf", a path its text."""
+    if type(value) in PLAIN or (type(value) is float and math.isfinite(value)):  # as most are
+        return value
     if is_dataclass(value) and not isinstance(value, type):
         return as_json_value(asdict(value))
     if isinstance(value, Mapping):
