@@ -61,21 +61,24 @@ def structure_of(
 
 
 def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, Float, list[Freedom]]:
-    """Mass, stiffness and degrees of freedom of the plane model in memory, with a fixed base.
+    """Mass, stiffness and degrees of freedom of the plane model in memory.
 
-    `axis` is the x of its axis and `base` the y of its base in m. OpenSees warns that the mass matrix is singular if
-    some degrees of freedom have no mass: the step that makes it form the matrix cannot be solved, and need not be.
-    Multi-point constraints (equalDOF, rigidLink) merge equations, and are refused.
+    Its base is fixed; `axis` is the x of its axis and `base` the y of its
+    base in m. OpenSees warns that the mass matrix is singular if some degrees
+    of freedom have no mass: the step that makes it form the matrix cannot be
+    solved, and need not be. Multi-point constraints (equalDOF, rigidLink)
+    merge equations, and are refused.
     """
     ops.wipeAnalysis()
     ops.constraints("Plain")
     ops.numberer("Plain")
     ops.system("FullGeneral")  # the only one that printA can print
     ops.algorithm("Linear")
-    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # otherwise OpenSees warns that there is none
+    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # without one OpenSees warns
     ops.analysis("Transient")
     found: list[Float] = []
-    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in the printed matrix
+    # factors of mass, damping and stiffness in the printed matrix
+    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
         ops.integrator("GimmeMCK", *factors)
         ops.analyze(1, 0.0)
         size = ops.systemSize()
@@ -84,12 +87,13 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
     freedoms: dict[int, Freedom] = {}
     for node in ops.getNodeTags():
         x, y = ops.nodeCoord(node)
-        for kind, equation in zip(("x", "y", "turn"), ops.nodeDOFs(node), strict=True):
+        equations = ops.nodeDOFs(node)
+        for kind, equation in zip(("x", "y", "turn"), equations, strict=True):
             if equation in freedoms:
                 raise ValueError(
                     f"Node {node} shares an equation with another. Model floors without multi-point constraints."
                 )
-            if equation >= 0:  # fixed degrees of freedom have a negative one
+            if equation >= 0:  # fixed degrees of freedom have none
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]
 

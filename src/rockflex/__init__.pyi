@@ -117,6 +117,7 @@ from .response import PushoverEvent as PushoverEvent
 from .response import RecordSet as RecordSet
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
+from .response import Sensitivity as Sensitivity
 from .response import check as check
 from .response import to_matlab as to_matlab
 from .response import to_netcdf as to_netcdf
@@ -147,6 +148,7 @@ from .structure import MultilinearBar as MultilinearBar
 from .structure import OneSided as OneSided
 from .structure import PinnedBeam as PinnedBeam
 from .structure import Pivot as Pivot
+from .structure import Podium as Podium
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
 from .structure import RockingProperties as RockingProperties
@@ -182,6 +184,7 @@ from .structure import winkler_bed as winkler_bed
 from .structure.file import read_structure as read_structure
 from .studies import Case as Case
 from .studies import CombinedPeaks as CombinedPeaks
+from .studies import Gradient as Gradient
 from .studies import InitialState as InitialState
 from .studies import OverturningScales as OverturningScales
 from .studies import Records as Records
@@ -190,11 +193,13 @@ from .studies import compare as compare
 from .studies import estimate_time as estimate_time
 from .studies import fill_study as fill_study
 from .studies import frequency_ratios as frequency_ratios
+from .studies import gradient as gradient
 from .studies import load_study as load_study
 from .studies import modal_combination as modal_combination
 from .studies import moment_rotation as moment_rotation
 from .studies import overturning_scales as overturning_scales
 from .studies import overturning_spectrum as overturning_spectrum
+from .studies import parameter_names as parameter_names
 from .studies import pushover as pushover
 from .studies import rocking_spectrum as rocking_spectrum
 from .studies import run_study as run_study

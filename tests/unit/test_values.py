@@ -124,6 +124,7 @@ VALUES = {
     rf.Eccentric: lambda: rf.Eccentric(frame(), 0.1),
     rf.Joint: lambda: rf.Joint(6.0, 1.0),
     rf.Jointed: lambda: rf.Jointed(frame(), rf.Joint(6.0, 1.0)),
+    rf.Podium: lambda: rf.Podium(frame(), 3, 0.6, 4.0, 5e3),
     rf.OneSided: lambda: rf.OneSided(frame(), 0.4),
     rf.EnergyLedger: lambda: response().energy,
     rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,

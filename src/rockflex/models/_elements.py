@@ -218,7 +218,7 @@ def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, properties
         heights = np.append(0.0, floors.heights[order])
         shares = [np.interp(element.height, heights, shapes[np.append(0, 1 + order), k]) for k in range(layout.modes)]
         row[: layout.modes] = element.cosine * np.array(shares)
-    row[layout.rotation] = element.cosine * element.height
+    row[layout.rotation] = element.cosine * float(properties.turning_heights(element.height))
     for place, joint in zip(layout.rotations[1:], properties.joints, strict=False):
         row[place] = element.cosine * max(element.height - joint.height, 0.0)
     if layout.slip >= 0:

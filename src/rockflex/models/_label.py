@@ -164,6 +164,7 @@ class Model:
         self._check_attached(kept, bouc_wen, ground)
         self._check_one_sided(kept, impact, ground)
         self._check_joints(kept, impact, bouc_wen, ground)
+        self._check_columns(kept, bouc_wen, ground)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact)
@@ -264,6 +265,22 @@ class Model:
                 field="elements",
             )
 
+    def _check_columns(self, kept: RockingProperties, bouc_wen: BoucWen | None, ground: Ground | None) -> None:
+        if kept.columns is None or not self.lifts:
+            return
+        if self.complete or bouc_wen is not None or self.missing_mass or not kept.n_modes:
+            raise InputError(
+                f"{self.label} has no columns that rock under a building, which simplified models with modes have. Use "
+                "MDOF-S, or a rocking_frame for a slab alone.",
+                field="columns",
+            )
+        if ground is not None and not ground.rigid:
+            raise InputError(
+                "Columns that rock under a building have no model on springs or on ground that they slide on. Leave "
+                "the ground out.",
+                field="ground",
+            )
+
     def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"
         if not self.lifts:
@@ -297,6 +314,8 @@ class Model:
         """Return the default impact law of the model."""
         if kept.opens != "both":
             return Rebound(kept.restitution or 0.0)
+        if kept.columns is not None and kept.n_modes and self.lifts:
+            return Restitution(kept.restitution or 0.0)
         if self.n_modes == 0 and self.lifts:
             return housner(kept) if kept.restitution is None else Restitution(kept.restitution)
         if not self.complete or self.closure == "SI":

@@ -43,7 +43,7 @@ class LinearJointed(LinearSystemBase):
     model: JointedModel  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase: a joint opens or lands, the base overturns, or an element takes another branch."""
+        """The events that end a phase: a joint opens or lands, the base overturns, or an element leaves its branch."""
         model, found = self.model, list[Event]()
         for joint, side in enumerate(model.stance(key)):
             if side != CLOSED:
@@ -102,7 +102,7 @@ class LinearOnSprings(LinearSystemBase):
         return self.model.properties.m_tot * self.model.gravity
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase: springs that unload, lift or land; the slip; elements; overturning."""
+        """The events that end a phase: springs that unload, lift or land; the slip; elements; overturning."""
         turned = self.unit(self.model.layout.rotation)
         tips = [way * turned for way in (-1.0, 1.0)]
         for row in tips:

@@ -57,7 +57,7 @@ def linear_system_of(base: "LinearSystemBase") -> System:
 
 @dataclass(frozen=True, eq=False)
 class LinearSystemBase:
-    """What the bases have in common: states, outputs, and the conversion from and to the states of the model.
+    """A system of any base: states, outputs, and the conversion from and to the states of the model.
 
     A row has the columns of the states, the ground acceleration and 1.
     """
@@ -205,11 +205,11 @@ class LinearSystemBase:
         return {}
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase."""
+        """The events that end a phase."""
         raise NotImplementedError
 
     def limit_rows(self, place: int, key: Key, branch: int) -> list[tuple[Array, int, float]]:
-        """What ends the branch of an element: condition, next branch, and the scale of the condition."""
+        """The ends of the branch of an element: condition, next branch, and the scale of the condition."""
         each, found = self.model.elements[place], list[tuple[Array, int, float]]()
         for stop in each.limits(branch):
             way = 1.0 if stop.upper else -1.0
@@ -310,7 +310,7 @@ class LinearOnRigidGround(LinearSystemBase):
         return base
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase: uplift, or the release of a held base; impact, overturning, and elements."""
+        """The events that end a phase: uplift, or the release of a held base; impact, overturning, and elements."""
         model = self.model
         found = list[Event]()
         if model.is_free(key):
@@ -413,7 +413,7 @@ class LinearOnRigidGround(LinearSystemBase):
         return self.taken(self.model.angular_acceleration(key), key)
 
     def turn_by_weight(self, key: Key) -> Array:
-        """What each m/s² of vertical acceleration adds to θ'': a row."""
+        """The share of θ'' of each m/s² of vertical acceleration: a row."""
         heavier = self.heavier
         assert isinstance(heavier, LinearOnRigidGround)
         return (heavier.turn(key) - self.turn(key)) / MORE
@@ -442,7 +442,7 @@ class LinearSliding(LinearOnRigidGround):
         return (*base, key[-1])
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase on ground on which the base cannot slide, and the slip."""
+        """The events that end a phase on ground on which the base cannot slide, and the slip."""
         return [*super().events(key), *self.slip(key)]
 
     def slip(self, key: Key) -> list[Event]:

@@ -41,7 +41,7 @@ def _top_displacement(model: RockingModel) -> Share:
 
 def _base_moment(model: RockingModel) -> Share:
     p = model.properties
-    return _base_force(model, p.effective_mass * p.effective_height, 1)
+    return _base_force(model, p.effective_mass * p.moment_heights, 1)
 
 
 def _base_shear(model: RockingModel) -> Share:
@@ -114,13 +114,13 @@ def floor_quantities(model: RockingModel, floors: FloorModes, names: Iterable[st
         "story_shear": {"restoring": np.cumsum((floors.force / p.omega**2)[::-1], axis=0)[::-1]},
         "total_floor_displacement": {
             "displacement": floors.displacement,
-            "rotation": floors.heights,
+            "rotation": p.turning_heights(floors.heights),
             "slip": 1.0,
             "joint": joints,
         },
         "floor_acceleration": {
             "acceleration": floors.displacement,
-            "turn": floors.heights,
+            "turn": p.turning_heights(floors.heights),
             "ground": 1.0,
             "joint_turn": joints,
         },

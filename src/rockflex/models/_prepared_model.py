@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from threading import Lock
@@ -291,13 +291,15 @@ def run_all(
     starts: Sequence[Start] | None = None,
     history: bool = False,
     work_limit: float | None = None,
+    seen: Callable[[Run], None] | None = None,
 ) -> Solutions:
     """Run records, each on one of the models of a pool, followed by `free_vibration` s (None: until settled).
 
     There is a model and a start for every run; starts are as in `PreparedModel.start`, and all at rest by default. The
     ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
     of each run in s, see `CostModel`; None means no limit. Some ten times a second the runs can be interrupted by
-    Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
+    Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state, and be `seen`: the
+    solver is shown after a run that could be solved.
 
     The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
     work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
@@ -356,6 +358,8 @@ def run_all(
         status, samples = Status(found.status[place]), int(found.samples[place])
         failures.setdefault(place, failure_of_run(engines[place].model, status, samples, dt, found.states[place]))
     kept = first.history_of(solver) if history and not failures else None
+    if seen is not None and not failures:
+        seen(solver)
     pool.release(solver)
     return Solutions(found, dt, first.n_peaks, first.n_peaks, failures, kept)
 

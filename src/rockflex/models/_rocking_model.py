@@ -119,7 +119,7 @@ class RockingModel(Value):
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
-        """What describes the ground, by name; nothing if it is rigid and the base cannot slide."""
+        """The parameters of the ground, by name; none if it is rigid and the base cannot slide."""
         return {}
 
     @cached_property

@@ -75,7 +75,7 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     angular = rates[:, n : n + 1]
     if not model.complete:
         upper = rates[:, n + 1 :] @ levers_of_joints(model.properties, floors.heights).T if layout.n_joints else 0.0
-        return ground + bend + floors.heights * angular + upper
+        return ground + bend + model.properties.turning_heights(floors.heights) * angular + upper
     rotation, spin = layout.of(states, layout.rotation)[:, None], layout.of(states, layout.spin)[:, None]
     sine, cosine = np.sin(rotation), np.cos(rotation)
     side = acting_side(states)

@@ -138,7 +138,8 @@ def _jumps(model: RockingModel, floors: FloorModes, states: Array) -> tuple[Arra
     Velocities change at impacts, where θ = 0, so the sum is that of small rotations for all models.
     """
     layout = model.layout
-    speed = layout.of(states, layout.spin)[:, None] * floors.heights + layout.velocities(states) @ floors.displacement.T
+    heights = model.properties.turning_heights(floors.heights)
+    speed = layout.of(states, layout.spin)[:, None] * heights + layout.velocities(states) @ floors.displacement.T
     if layout.n_joints:
         spins = np.column_stack([layout.of(states, place + 1) for place in layout.rotations[1:]])
         speed = speed + spins @ levers_of_joints(model.properties, floors.heights).T

@@ -26,6 +26,7 @@ from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, interpolated_states, only_of_run, settled_rotation
 from rockflex.response._peaks import global_histories
+from rockflex.response._sensitivity import Sensitivity, sensitivity_of_history
 from rockflex.response._tables import history_to_dataframe, history_to_dataset
 from rockflex.structure._ground import Springs
 
@@ -140,6 +141,15 @@ class History(Value):
         (0.0198, 0.0)
         """
         return settled_rotation(self.model, self.states, work_limit)
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """By how many per cent each peak changes for 1 % on the scale of the record, and a note where that is much.
+
+        Found by running the record once more, at the first use. An `InputError` tells of a model that is not linear
+        between events.
+        """
+        return sensitivity_of_history(self.model, self.states)
 
     def resample(self, dt: float) -> "SampledHistory":
         """Return the motion at equal steps from the first state to the last, as `at` does.

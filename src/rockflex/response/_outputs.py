@@ -193,6 +193,11 @@ OUTPUTS: Mapping[str, Output] = {
         ", at the largest |θ| and the largest base shear; zero without leaning mass. The push is neglected, and above "
         "0.05 a warning says so",
     ),
+    "column_pull": Output(
+        "M_b/M_pull", "ratio", "largest base moment over that which first pulls a column of a podium up",
+        ", where the weight is shared by all columns; zero without a podium, or where its `column_spacing` is not "
+        "known. Above 1 a warning says so",
+    ),
     "n_uplifts": Output(
         "uplifts", "count", "number of uplifts",
         ". An initial rotation does not count as one, so there can be one more impact than uplifts. On springs: how "

@@ -40,6 +40,11 @@ def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> An
     return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
 
 
+def column_pull(properties: RockingProperties, moment: float) -> float:
+    """Return the base moment of a run in N m over that which first pulls a column up; zero if that is not known."""
+    return 0.0 if properties.columns is None else moment / properties.columns.pull_moment
+
+
 def may_fall(
     properties: Sequence[RockingProperties], layout: StateLayout, final: Array, turned: Array, rocking: Bools
 ) -> Bools:
@@ -134,7 +139,7 @@ def _places_of_rows(
 
 
 class TrackedPeaks(NamedTuple):
-    """What a run tracks: largest magnitudes, and, on springs, largest values."""
+    """The peaks that a run tracks: largest magnitudes, and, on springs, largest values."""
 
     peaks: NamedPeakRows
     extremes: NamedPeakRows | None
@@ -229,6 +234,33 @@ class ElementPeaks(NamedTuple):
     ductility: Array
     residual_drift: Array
     residual_drift_ratio: Array
+
+
+def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks) -> dict[str, Any]:
+    """Return the fields of a `Response` that follow from the peaks and the last state of a run, by name."""
+    p, final, peaks = model.properties, solution.final_state, tracked.of(solution)
+    rotation, (right, left) = float(peaks["rotation"]), largest_rotations(peaks)
+    uplift, settlement = largest_edge_moves(model, peaks)
+    found = {f"max_{name}": float(peaks[name]) for name in ("rotation", *GLOBAL)}
+    if p.top_height is None:
+        found["max_total_top_displacement"] = math.nan
+    least = p.resting_reaction - solution.lost_support  # springs cannot pull: in flight only rounding would say so
+    return {
+        **found,
+        "min_vertical_reaction": least if model.springs is None else max(least, 0.0),
+        **element_peaks(model, element_extremes(model, peaks), final)._asdict(),
+        "residual_rotation": math.nan
+        if solution.overturned
+        else float(final[model.layout.rotation]) - model.rest.rotation,
+        "balance_ratio": float(balance_ratio(model, right, left)),
+        "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
+        "max_slip": float(peaks.get("slip", 0.0)),
+        "residual_slip": float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
+        "max_edge_uplift": uplift,
+        "max_edge_settlement": settlement,
+        "leaning_push": float(leaning_push(p, rotation, found["max_base_shear"])),
+        "column_pull": column_pull(p, found["max_base_moment"]),
+    }
 
 
 def _fixed(values: ArrayLike) -> NDArray[Any]:

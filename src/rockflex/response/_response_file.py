@@ -39,6 +39,7 @@ from rockflex.structure._elements import ELEMENTS
 from rockflex.structure._ground import Springs
 from rockflex.structure._joint import JointAbove
 from rockflex.structure._law_bars import BARS
+from rockflex.structure._pivot import OnColumns
 from rockflex.structure._rocking import RockingProperties
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
@@ -63,6 +64,7 @@ LATER: dict[str, Any] = {
     "may_fall": False,
     "leaning_push": 0.0,
     "max_joint_rotation": 0.0,
+    "column_pull": 0.0,
 }  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
 SPRINGS = ("positions", "stiffness", "damping", "area")
@@ -109,6 +111,7 @@ def save_response(
             {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in asdict(each).items()}
             for each in model.properties.joints
         ]
+        scalars["columns"] = None if model.properties.columns is None else asdict(model.properties.columns)
         scalars["elements"] = [
             {"kind": type(each).__name__, **element_parameters(each)} for each in model.properties.elements
         ]
@@ -220,6 +223,8 @@ def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> Rocking
     known = {name: scalars[name] for name in KNOWN if name in scalars}
     known["stories"] = [YieldingStory(**each) for each in scalars["stories"]]
     known["joints"] = [JointAbove(**each) for each in scalars.get("joints", [])]
+    if scalars.get("columns") is not None:
+        known["columns"] = OnColumns(**scalars["columns"])
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)

@@ -20,6 +20,7 @@ from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
 from rockflex.structure._participation import rocking_properties
 from rockflex.structure._pivot import Pivot
+from rockflex.structure._podium import Podium
 from rockflex.structure._rigid_bodies import rigid_block, rocking_frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
@@ -58,6 +59,7 @@ __all__ = [
     "OneSided",
     "PinnedBeam",
     "Pivot",
+    "Podium",
     "Restrained",
     "RitzShapes",
     "RockingProperties",

@@ -19,6 +19,7 @@ GROUND, UPRIGHT, BODY = 0.0, 1.0, 2.0
 
 MAX_HEIGHTS = 40  # heights of a structure that are drawn, besides the base
 _MAX_THICK_FLOORS = 25
+_MAX_COLUMNS = 12  # columns of a podium that are drawn
 _HTML_HEIGHT, _HTML_WIDTH, _HTML_EDGE = 170.0, 260.0, 8.0  # pixels of the drawing in a notebook
 _COLUMN, _LEANING, _BRACE = 0.82, 1.8, 0.6  # x over the distance from the axis to the nearer edge
 _MASS, _BRACKET, _MAX_BRACKET, _TENDON, _SUNK = 0.06, 0.16, 0.4, 0.6, 0.02  # lengths over the height
@@ -124,6 +125,8 @@ class StructureOutline:
         the mass is distributed or not known.
     joints
         Heights of the joints above the base.
+    turning
+        Height in m up to which points move by a unit of θ as far as they are high; others move as far as this one.
     """
 
     kind: Kind
@@ -135,6 +138,7 @@ class StructureOutline:
     elements: tuple[tuple[str, Array], ...]
     masses: Masses = ()
     joints: tuple[float, ...] = ()
+    turning: float = math.inf
 
     def sway(self, displacement: Array, joint_rotation: Array) -> Array:
         """Return how far the points at `heights` move relative to the turned base in m, shape (k, m).
@@ -175,6 +179,8 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     else:
         kind = "column"
     heights, shapes = _heights_and_shapes(p, modes)
+    if p.columns is not None:
+        return _podium_outline(p, structure, kind, heights, shapes)
     left, right = -p.pivot(-1).arm, p.pivot(1).arm
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     behind = [_stroke(left if side > 0 else right, [0.0, top], 8.0, GROUND) for side in p.sides if len(p.sides) == 1]
@@ -187,6 +193,44 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
     masses, joints = _concentrated_masses(kind, p, structure), tuple(each.height for each in p.joints)
     return StructureOutline(kind, heights, shapes, left, right, strokes, held, masses, joints)
+
+
+def _podium_outline(
+    p: RockingProperties, structure: Any, kind: Kind, heights: Array, shapes: Array
+) -> StructureOutline:
+    """Return the outline of a building on columns, which stands on their heads and does not turn with them."""
+    assert p.columns is not None
+    height, given = p.columns.height, structure
+    while hasattr(given, "structure") and not hasattr(given, "n_columns"):
+        given = given.structure
+    number, width = min(getattr(given, "n_columns", 2), _MAX_COLUMNS), getattr(given, "column_width", p.half_width)
+    spread = getattr(given, "column_spacing", None) or max(3.0 * width, 0.6 * float(heights[-1]) / max(number - 1, 1))
+    places = (spread * (np.arange(number) - 0.5 * (number - 1))).tolist()
+    edge, how = places[-1] + 0.5 * width, np.array([GROUND, GROUND, UPRIGHT, UPRIGHT, GROUND])
+    around, up = np.array([-0.5, 0.5, 0.5, -0.5, -0.5]) * width, np.array([0.0, 0.0, height, height, 0.0])
+    columns = [_stroke(x + around, up, 1.6, how, filled=True) for x in places]
+    body = [
+        _stroke(each.points[:, 0], each.points[:, 1] + height, each.width, UPRIGHT, filled=each.filled)
+        for each in _body_strokes(kind, heights, -edge, edge, None, leaning=False)
+    ]
+    lifted = np.array([0.0, height, UPRIGHT - BODY])
+    held = tuple(
+        (each.symbol, np.array(_element_ends(each, p, heights[-1], -edge, edge)) + lifted) for each in p.elements
+    )
+    masses = tuple((z + height, mass) for z, mass in _concentrated_masses(kind, p, structure))
+    slab = _stroke([-edge, edge], height, 5.0, UPRIGHT)
+    still = np.zeros((1, shapes.shape[1]))
+    return StructureOutline(
+        kind,
+        np.array([0.0, *(heights + height)]),
+        np.vstack((still, shapes)),
+        -edge,
+        edge,
+        (*columns, *body, slab),
+        held,
+        masses,
+        turning=height,
+    )
 
 
 def _concentrated_masses(kind: Kind, p: RockingProperties, structure: Any) -> Masses:

@@ -1,5 +1,8 @@
 from ._arguments import InitialState as InitialState
 from ._compare import compare as compare
+from ._gradient import Gradient as Gradient
+from ._gradient import gradient as gradient
+from ._gradient import parameter_names as parameter_names
 from ._modal_combination import CombinedPeaks as CombinedPeaks
 from ._modal_combination import SecondMode as SecondMode
 from ._modal_combination import frequency_ratios as frequency_ratios

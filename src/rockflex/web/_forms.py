@@ -57,12 +57,19 @@ PRESETS: list[dict[str, Any]] = [
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""
 
 
-OF_WHOLE = ("eccentricity", "one_sided", "leaning_masses", "stories", "joints")  # fields of every kind of structure
+OF_WHOLE = (
+    "eccentricity",
+    "one_sided",
+    "leaning_masses",
+    "stories",
+    "podium",
+    "joints",
+)  # fields of every kind of structure
 FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
 }
-"""What the page begins with: a pier that rocks."""
+"""The structure of the first screen: a pier that rocks."""
 
 
 def forms_of_structures() -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What the reports of the page were computed from, in words: the fields of the structure, and the records' target."""
+"""The inputs of the page's reports in words: the fields of the structure, and the records' target."""
 
 import math
 from collections.abc import Iterator

@@ -139,7 +139,7 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
         return {"note": " ".join(error.errors.values())}
     if simple:
         displacement = motion.sd(2.0 * math.pi / float(p.omega[0]), float(p.zeta[0]))
-        moment = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2) * displacement
+        moment = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2) * displacement
         top = None if p.top_height is None else abs(float(p.top_ordinate[0])) * displacement
     elif p.n_modes:
         with suppress(Refusal):
@@ -221,7 +221,7 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     """Suggest a yield displacement in m, beyond the uplift of the base and below the demand on a fixed base."""
     if not p.n_modes:
         return None
-    stiffness = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2)
+    stiffness = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2)
     held = 1.5 * p.resisting_moment / stiffness
     fixed = 0.5 * motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")

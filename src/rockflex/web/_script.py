@@ -248,6 +248,8 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
+    if entry.podium is not None:
+        lines.append(f"structure = rf.Podium(structure, {_python_named_arguments(entry.podium.model_dump())})")
     if entry.joints is not None:
         joints = ", ".join(_python_call("Joint", vars(each)) for each in joints_at(**entry.joints.model_dump()))
         lines.append(f"structure = rf.Jointed(structure, [{joints}])")

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import with_infinite_numbers
 from rockflex.foundation.language import Language
 from rockflex.foundation.units import SystemName
 from rockflex.fragility._limit_states import (
@@ -361,9 +362,9 @@ def parse_page_state(content: Any) -> PageState:
             raise Refusal(
                 f"The link holds more than {MAX_STATE_VALUES} values, which is more than the page takes.", 413
             )
-        state = PageState.model_validate(_with_infinite_numbers(content))
+        state = PageState.model_validate(with_infinite_numbers(content))
     except ValidationError as error:
-        structure = _with_infinite_numbers(content.get("structure"))
+        structure = with_infinite_numbers(content.get("structure"))
         ranges = form_number_errors("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
         raise Refusal(dict([*(ranges | _field_error_messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
@@ -432,15 +433,6 @@ def _number_of_values(value: Any) -> int:
     if isinstance(value, dict):
         return 1 + sum(map(_number_of_values, value.values()))
     return 1 + sum(map(_number_of_values, value)) if isinstance(value, list) else 1
-
-
-def _with_infinite_numbers(value: Any) -> Any:
-    """Replace "inf" by the number, which JSON cannot write."""
-    if isinstance(value, dict):
-        return {str(key): _with_infinite_numbers(each) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_with_infinite_numbers(each) for each in value]
-    return math.inf if value == "inf" else value
 
 
 def _field_error_messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:

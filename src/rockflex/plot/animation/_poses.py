@@ -164,7 +164,8 @@ class StructurePoses:
         """Return where points of the outline, shape (k, 3), are drawn in a frame; those in the ground `sunk` lower."""
         x, z, how = points.T
         sway = np.interp(z, self.outline.heights, self.sway[frame])
-        across, up = self.place(frame, x + amplification * sway, z, amplification)
+        turning = np.minimum(z, self.outline.turning)
+        across, up = self.place(frame, x + amplification * sway, turning, amplification)
         still = np.where(z > 0.0, z, z - sunk * (how == GROUND))
         return np.where(how == GROUND, x, across), np.where(how == BODY, up, still)
 

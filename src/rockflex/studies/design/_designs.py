@@ -134,7 +134,7 @@ def designs_of_structure(
 
 
 def facts_of_design(p: RockingProperties) -> dict[str, float]:
-    """What describes the base and the tendons of a design, by the names of columns."""
+    """The numbers that describe the base and the tendons of a design, by the names of columns."""
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     return {
         "half_width": p.half_width,

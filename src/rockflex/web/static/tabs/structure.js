@@ -138,6 +138,7 @@ export default function structureTab(app) {
     const strength = () => Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2));
     const starts = {
       stories: () => ({ strengths: strength(), post_yield_ratio: 0.05 }),
+      podium: () => ({ n_columns: 4, column_width: 0.8, column_height: 5, column_mass: 8e3 }),
       joints: () => ({ heights: [Number((0.5 * (view?.heights.at(-1) ?? 10)).toPrecision(2))], half_widths: view?.half_width ?? 1 }),
     };
     const start = starts[spec.name] ?? (() => ({}));
