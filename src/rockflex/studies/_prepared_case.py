@@ -305,8 +305,11 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
         else:
             response = cases[0].response(runs[places[0]][1], solutions.one(0))
             responses[places[0]], found = response, columns_of_responses([response])
+        where = np.array(places)
         for name, values in found.items():
-            columns.setdefault(name, missing_values(len(runs), values.dtype))[places] = values
+            if name not in columns:
+                columns[name] = missing_values(len(runs), values.dtype)
+            columns[name][where] = values
         left.subtract(cases)
         if not keep:
             for case in {case for case in cases if not left[case]}:
