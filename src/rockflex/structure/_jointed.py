@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_instance
+from rockflex.foundation.checks import checked_instances
 from rockflex.foundation.descriptions import PLAIN, Described, described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
@@ -73,23 +73,17 @@ class Jointed(ModifiedStructure):
     ]
 
     def __init__(self, structure: Structure, joints: Joint | Iterable[Joint]) -> None:
-        try:
-            given = (joints,) if isinstance(joints, Joint) else tuple(joints)
-        except TypeError:
-            raise InputError(
-                f"joints must be a list of Joint objects, but {shown(joints)} was given.", field="joints"
-            ) from None
+        given = checked_instances("joints", (joints,) if isinstance(joints, Joint) else joints, Joint)
         heights, _, _ = _masses_of(structure)
         below = 0.0
         for place, each in enumerate(given):
-            found = checked_instance("joints", each, Joint)
-            if not below < found.height <= heights.max():
+            if not below < each.height <= heights.max():
                 raise InputError(
                     f"joints must be above one another and not above the highest mass, at {heights.max():g} m, but no. "
-                    f"{place + 1} is at {found.height:g} m after {below:g} m.",
+                    f"{place + 1} is at {each.height:g} m after {below:g} m.",
                     field=f"joints.{place}.height",
                 )
-            below = found.height
+            below = each.height
         vars(self).update(structure=structure, joints=given)
         self.check()
 

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
     checked_damping_ratios,
+    checked_instance,
+    checked_instances,
     checked_magnitude,
     checked_positive,
     checked_whole_number,
@@ -282,8 +284,8 @@ class RockingProperties(HtmlTable, Value):
             stories=checked_stories(stories, floors, modes["omega"].size),
             restitution=checked_restitution(restitution, opens, modes["omega"].size, columns),
             opens=opens,
-            joints=tuple(joints),
-            columns=columns,
+            joints=checked_instances("joints", joints, JointAbove),
+            columns=None if columns is None else checked_instance("columns", columns, OnColumns),
         )
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":

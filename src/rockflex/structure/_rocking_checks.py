@@ -10,6 +10,7 @@ from rockflex.foundation.checks import (
     check_all_positive,
     checked_finite_vector,
     checked_instance,
+    checked_instances,
     is_one_of,
 )
 from rockflex.foundation.errors import InputError
@@ -126,13 +127,9 @@ def check_floors_of(element: Attachment, floors: FloorModes | None, n_modes: int
 def checked_stories(
     given: Iterable[YieldingStory], floors: FloorModes | None, n_modes: int
 ) -> tuple[YieldingStory, ...]:
-    try:
-        stories = tuple(given) if n_modes else ()
-    except TypeError:
-        message = f"stories must be a sequence of YieldingStory objects, but {shown(given)} was given."
-        raise InputError(message, field="stories") from None
+    stories = checked_instances("stories", given, YieldingStory) if n_modes else ()
     for each in stories:
-        floor = checked_instance("stories", each, YieldingStory).floor
+        floor = each.floor
         if floors is None or floor > floors.heights.size:
             known = "none" if floors is None else f"{floors.heights.size}"
             raise InputError(
