@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex.engine.stops import check_interruption
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_positive, real_or_nan
 from rockflex.foundation.errors import InputError
@@ -256,6 +257,7 @@ class Friction:
         """Yield the angles with each of some signs at rising places of every interval of positive length."""
         lasting = np.diff(states[:, TIME]) > 0.0
         for rows, moved in self._between(states, rates, motion, places):
+            check_interruption()  # many stiff springs need many places
             inside = rows[lasting]
             known = accelerations_at_states(self._model, inside) if moved is None else moved[lasting]
             yield [each._angle(each._reactions_at(inside, known)) for each in signs]

@@ -30,6 +30,7 @@ from rockflex.response._respond import (
     response_of_solution,
 )
 from rockflex.response._response import Response
+from rockflex.response._sensitivity import TiedModel
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import (
     GroundChoice,
@@ -78,6 +79,11 @@ class PreparedCase:
         object.__setattr__(self, "tracked", tracked)
         extremes = None if tracked.extremes is None else tracked.extremes.quantities
         object.__setattr__(self, "engine", PreparedModel(self.model, tracked.peaks.quantities, extremes))
+
+    @property
+    def tied(self) -> TiedModel:
+        """The model, its engine, and what runs track."""
+        return TiedModel(self.model, self.engine, self.tracked)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
         """Return the task of a run, from which its work is estimated."""

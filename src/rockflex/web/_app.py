@@ -45,6 +45,7 @@ from rockflex.web._record_sets import periods_view
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
+from rockflex.web._site import site_view
 from rockflex.web._slots import Slots, visitor_left, visitor_of
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
@@ -396,6 +397,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         Route("/api/selection", view(selection, server.selections), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/periods", view(lambda state, _: periods_view(state, uploads)), methods=["POST"]),
+        Route("/api/site", view(lambda state, _: site_view(state, uploads), server.selections), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
