@@ -95,7 +95,8 @@ def matrices_of(
         equations = ops.nodeDOFs(node)
         for kind, equation in zip(("x", "y", "turn"), equations, strict=True):
             if equation in freedoms:
-                raise ValueError(f"Node {node} shares an equation: use no constraints.")
+                shares = f"Node {node} shares an equation with another"
+                raise ValueError(f"{shares}: use no constraints.")
             if equation >= 0:  # fixed degrees of freedom have none
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]
