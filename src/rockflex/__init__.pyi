@@ -94,6 +94,7 @@ from .plot import plot_set as plot_set
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
 from .plot import plot_structure as plot_structure
+from .plot import plot_tornado as plot_tornado
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
@@ -185,15 +186,18 @@ from .structure.file import read_structure as read_structure
 from .studies import Case as Case
 from .studies import CombinedPeaks as CombinedPeaks
 from .studies import Gradient as Gradient
+from .studies import Identification as Identification
 from .studies import InitialState as InitialState
 from .studies import OverturningScales as OverturningScales
 from .studies import Records as Records
 from .studies import SecondMode as SecondMode
+from .studies import Tornado as Tornado
 from .studies import compare as compare
 from .studies import estimate_time as estimate_time
 from .studies import fill_study as fill_study
 from .studies import frequency_ratios as frequency_ratios
 from .studies import gradient as gradient
+from .studies import identify as identify
 from .studies import load_study as load_study
 from .studies import modal_combination as modal_combination
 from .studies import moment_rotation as moment_rotation
@@ -207,6 +211,7 @@ from .studies import running as running
 from .studies import simulate as simulate
 from .studies import simulate_many as simulate_many
 from .studies import simulate_set as simulate_set
+from .studies import tornado as tornado
 from .studies.cloud import CloudStudy as CloudStudy
 from .studies.cloud import run_cloud as run_cloud
 from .studies.design import BestDesign as BestDesign

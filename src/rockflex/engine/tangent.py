@@ -71,6 +71,8 @@ class Tangents(NamedTuple):
     state: Array  # (n,): that state
     place: int  # of its phase among the keys
     rates: Array  # (e,): of the conditions at the events, over their scales, in 1/s; NaN where none was crossed
+    seen: Array  # (k, r): outputs that were observed, at the states of the run
+    slopes: Array  # (P, k, r): and their derivatives at these times
 
 
 class _Part(NamedTuple):
@@ -225,6 +227,7 @@ def follow_tangents(
     one_sided: Bools,
     *,
     at_rest: bool = False,
+    observed: Sequence[int] = (),
 ) -> Tangents:
     """Follow tangents through a run.
 
@@ -240,8 +243,10 @@ def follow_tangents(
         Which peaks are largest values, and not largest magnitudes, shape (m,).
     at_rest
         Whether the last state is that which the run would approach without excitation.
+    observed
+        Numbers of the outputs whose values at all states are wanted, too.
     """
-    found = _Pass(trace, phase_of, tangent_of, one_sided)
+    found = _Pass(trace, phase_of, tangent_of, one_sided, observed)
     made = found.follow(start)
     return found.brought_to_rest(made) if at_rest else made
 
@@ -255,8 +260,9 @@ class _Pass:
         phase_of: Callable[[Key], LinearPhase],
         tangent_of: Callable[[Key], PhaseTangent],
         one_sided: Bools,
+        observed: Sequence[int],
     ) -> None:
-        self.trace, self.one_sided = trace, one_sided
+        self.trace, self.one_sided, self.observed = trace, one_sided, list(observed)
         used, shakes = np.unique(trace.places).tolist(), bool(trace.rise.any())
         self.motions = {
             place: _Motion(phase_of(trace.keys[place]), tangent_of(trace.keys[place]), trace.h, shakes)
@@ -270,7 +276,7 @@ class _Pass:
 
     def follow(self, start: Array) -> Tangents:
         trace, last = self.trace, len(self.trace.times) - 1
-        wanted = {node for node, _ in self.peaks}
+        wanted = set(range(last + 1)) if self.observed else {node for node, _ in self.peaks}
         lengths, at = np.diff(trace.times), {}
         parts = self._parts(lengths)
         s, node = start, 0
@@ -299,7 +305,24 @@ class _Pass:
             place = self.motions[int(trace.places[last])]
             s = s + delay[:, None] * place.rates(trace.states[last], *self.accelerations[last])
         found = np.stack([self._slope_of_peak(row, at) for row in range(len(self.peaks))], axis=1)
-        return Tangents(found, s, trace.states[last], int(trace.places[last]), self.rates)
+        values, slopes = self._along(at) if self.observed else (np.zeros((0, 0)), np.zeros((len(s), 0, 0)))
+        return Tangents(found, s, trace.states[last], int(trace.places[last]), self.rates, values, slopes)
+
+    def _along(self, at: Mapping[int, Array]) -> tuple[Array, Array]:
+        """The outputs that are observed, and their derivatives, at all states."""
+        trace, count, rows = self.trace, len(self.trace.times), self.observed
+        tangents = np.array([at[node] for node in range(count)])
+        values, slopes = np.zeros((count, len(rows))), np.zeros((tangents.shape[1], count, len(rows)))
+        for place, motion in self.motions.items():
+            nodes = np.flatnonzero(trace.places == place)
+            p, t, y, s = motion.phase, motion.tangent, trace.states[nodes], tangents[nodes]
+            a, a_v = trace.ground[nodes, None], trace.rise[nodes, None]
+            C_v, d_v = number_of_phase(p, "C_v")[rows], number_of_phase(p, "d_v")[rows]
+            values[nodes] = y @ p.C[rows].T + a * p.d[rows] + p.e[rows] + a_v * (y @ C_v.T + d_v)
+            for k in range(tangents.shape[1]):
+                slopes[k, nodes] = s[:, k] @ p.C[rows].T + y @ t["C"][k, rows].T + a * t["d"][k, rows] + t["e"][k, rows]
+                slopes[k, nodes] += a_v * (s[:, k] @ C_v.T + y @ t["C_v"][k, rows].T + t["d_v"][k, rows])
+        return values, slopes
 
     def brought_to_rest(self, made: Tangents) -> Tangents:
         """Let the motion after the last state go on for ever, without excitation."""

@@ -3,16 +3,19 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from rockflex.engine.system import Event
+from rockflex.foundation.arrays import Array
 from rockflex.models._base_motion import horizontal_reaction
-from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
+from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT, rate_of_elongation_row
 from rockflex.models._jointed_model import JointedModel
 from rockflex.models._linear_system import TINY, LinearOnRigidGround, LinearSliding, LinearSystemBase
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import STICK
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, YIELDING, SpringModel
 
 AT_ONCE = 1e-15  # s before θ = 0 at which a joint lands, so that one that moves inwards from there does so at once
 
@@ -92,6 +95,40 @@ class LinearOnSprings(LinearSystemBase):
     model: SpringModel  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @cached_property
+    def soil(self) -> dict[int, int]:
+        """The place in the states of the elastic compression of each spring that can yield, by its own place."""
+        return {place: self.model.layout.core + len(self.bars) + k for k, place in enumerate(self.model.soft)}
+
+    @cached_property
+    def _soil_columns(self) -> list[int]:
+        return [self.model.crushed(place) for place in self.model.soft]
+
+    def compression(self, place: int) -> Array:
+        """The whole compression of a spring under the base: a row."""
+        found = -self.model.depths[place][self.columns]
+        found[list(self.soil.values())] = 0.0
+        return found
+
+    def state_of(self, key: Key, state: Array) -> Array:
+        """The states from the state of the model, with the elastic compression of springs that can yield."""
+        found, springs = super().state_of(key, state), self.model.springs
+        for place, at in self.soil.items():
+            assert springs.capacity is not None
+            whole = float(self.compression(place) @ np.append(found, (0.0, 1.0)))
+            yields = key[1 + place] == YIELDING
+            held = float(springs.capacity[place] / springs.stiffness[place])
+            found[at] = held if yields else whole - state[self.model.crushed(place)]
+        return found
+
+    def rates(self, key: Key) -> Array:
+        """The rates of the states; a spring that yields keeps its elastic compression."""
+        found = super().rates(key)
+        for place, at in self.soil.items():
+            if key[1 + place] != YIELDING:
+                found[at] = rate_of_elongation_row(-self.model.depths[place], self.model.layout)[self.columns]
+        return found
+
+    @cached_property
     def heave_scale(self) -> float:
         """The settlement of the springs under the weight, m."""
         return self.weight / float(self.model.springs.stiffness.sum())
@@ -112,12 +149,23 @@ class LinearOnSprings(LinearSystemBase):
         return [*self.of_springs(key), *self.of_slip(key), *of_elements, *found]
 
     def of_springs(self, key: Key) -> list[Event]:
-        """A spring unloads, the base leaves it, or comes back to it."""
+        """A spring unloads, yields, the base leaves it, or comes back to it."""
         model, found, last = self.model, list[Event](), self.model.springs.n - 1
         for j, branch in enumerate(key[1 : model.springs.n + 1]):
-            depth, push = model.depths[j][self.columns], model.pushes[j][self.columns]
+            depth, push = model.depths[j][self.columns], self.taken(model.pushes[j], key)
+            if j in self.soil:
+                depth = -self.unit(self.soil[j])
             edge, damped, place = j in (0, last), model.springs.damping[j] > 0.0, 1 + j
             opens, closes = ("uplift", "impact") if edge else ("change", "change")
+            if branch == YIELDING:
+                row = rate_of_elongation_row(-model.depths[j], model.layout)[self.columns]
+                found.append(self.event("turn", row, _with(key, place, LOADED), 1.0))
+                continue
+            if branch == LOADED and j in self.soil:
+                assert model.springs.capacity is not None
+                row = depth.copy()
+                row[-1] = model.springs.capacity[j] / model.springs.stiffness[j]
+                found.append(self.event("yield", row, _with(key, place, YIELDING), self.heave_scale))
             if branch == LOADED:
                 following = _with(key, place, RECEDING if damped else LIFTED)
                 found.append(self.event("change" if damped else opens, push, following, self.weight))

@@ -19,7 +19,6 @@ from rockflex.models._elements import (
     base_equations_of,
     branches_of_moving_elements,
     direction_of_yielding,
-    internal_count,
     internal_places,
     is_in_reach,
     rate_of_elongation_row,
@@ -89,13 +88,27 @@ class LinearSystemBase:
         parts |= {"slip": 1, "slip_rate": 1} if layout.slip >= 0 else {}
         parts |= {"heave": 1, "heave_rate": 1} if layout.heave >= 0 else {}
         parts |= {"joints": 2 * layout.n_joints} if layout.n_joints else {}
-        return StateLayout(**parts, elastic=len(self.bars))
+        return StateLayout(**parts, elastic=len(self.bars) + len(self.soil))
+
+    @cached_property
+    def soil(self) -> dict[int, int]:
+        """The place in the states of the elastic compression of each spring that can yield, by its own place."""
+        return {}
+
+    def compression(self, place: int) -> Array:
+        """The whole compression of a spring under the base: a row."""
+        raise NotImplementedError
+
+    @cached_property
+    def _soil_columns(self) -> list[int]:
+        return []
 
     @cached_property
     def columns(self) -> Integers:
         """Where the columns of a row are in the rows of the model."""
         layout, known = self.model.layout, internal_places(self.model.elements)
-        return np.array([*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1])
+        bars = (layout.memory + known[place] for place in self.bars)
+        return np.array([*range(layout.core), *bars, *self._soil_columns, -2, -1])
 
     def taken(self, rows: Array, key: Key) -> Array:
         """Rows of the model over the states, in which a plastic stretch m is δ + e_0 minus the elastic one."""
@@ -104,6 +117,10 @@ class LinearSystemBase:
             share = found[..., at].copy()
             found[..., at] = -share
             found += share[..., None] * self.stretch_in(place, key)
+        for place, at in self.soil.items():
+            share = found[..., at].copy()
+            found[..., at] = -share
+            found += share[..., None] * self.compression(place)
         return found
 
     def stretch_in(self, place: int, key: Key) -> Array:
@@ -238,7 +255,7 @@ class LinearSystemBase:
     def state_of(self, key: Key, state: Array) -> Array:
         """The states from the state of the model, whose internal variables are those at the start of the branches."""
         model, known = self.model, internal_places(self.model.elements)
-        found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars))))
+        found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars) + len(self.soil))))
         for place, at in self.bars.items():
             memory, offset = state[model.layout.memory + known[place]], self._offset(place, key)
             stretch = self.stretch_in(place, key) @ np.append(found, (0.0, 1.0))
@@ -272,9 +289,11 @@ class LinearSystemBase:
             marks = np.array([each.branch_code(model.element_key(key)[1 + place]) for key in keys], dtype=float)[places]
             last = found[:, model.layout.memory + index + each.n_internal - 1]
             last[:] = np.where(np.isnan(marks), last, marks)  # NaN where there is none
-        if model.layout.n_internal > internal_count(model.elements):
+        for (place, at), column in zip(self.soil.items(), self._soil_columns, strict=True):
+            found[:, column] = states @ self.compression(place)[:-2] - states[:, at]
+        if model.layout.n_internal > model.first_mark:
             more = np.array([model.marks(key) for key in keys])[places]
-            found[:, model.layout.memory + internal_count(model.elements) :] = more
+            found[:, model.layout.memory + model.first_mark :] = more
         return found
 
     def element_events(self, place: int, key: Key) -> list[Event]:

@@ -15,7 +15,7 @@ from rockflex.models._field_numbers import field_numbers
 from rockflex.models._jointed_model import JointedModel
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._spring_model import LOADED
+from rockflex.models._spring_model import LOADED, YIELDING, SpringModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._values_at_states import acting_side, observed, rates_at_states
 
@@ -67,8 +67,11 @@ def spring_forces(model: RockingModel, states: Array) -> Array:
     layout, side = model.layout, states[:, SIDE]
     moving = states[:, HEADER : HEADER + layout.moving]
     vector = model.stretched(np.column_stack((moving, states[:, GROUND], np.ones(side.size))))
-    loaded = model.branches_at(side, layout.of(states, layout.rotation), states)[:, 1 : model.springs.n + 1] == LOADED
-    return np.where(loaded, vector @ model.spring_forces(model.start(CLOSED)).T, 0.0)
+    branches = model.branches_at(side, layout.of(states, layout.rotation), states)[:, 1 : model.springs.n + 1]
+    found = np.where(branches == LOADED, vector @ model.spring_forces(model.start(CLOSED)).T, 0.0)
+    if isinstance(model, SpringModel) and model.soft:
+        found = np.where(branches == YIELDING, vector @ model.holds.T, found)
+    return found
 
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:

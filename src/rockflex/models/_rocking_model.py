@@ -153,6 +153,11 @@ class RockingModel(Value):
         return tuple(place for place, each in enumerate(self.elements) if each.position is None)
 
     @property
+    def first_mark(self) -> int:
+        """The place of the first number that tells branches among the internal variables."""
+        return internal_count(self.elements)
+
+    @property
     def moving_places(self) -> tuple[int, ...]:
         """The places of elements whose elongation does not follow from the rotation of the base alone."""
         return self.attached_places

@@ -6,6 +6,7 @@ from rockflex.foundation.arrays import Array
 from rockflex.models._jointed_model import JointedModel
 from rockflex.models._named_quantities import levers_of_joints
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import GROUND, SIDE
 from rockflex.models._values_at_states import accelerations_at_states, acting_side
 from rockflex.structure._analysis import FloorModes
@@ -60,6 +61,8 @@ def soil_strain(model: RockingModel, states: Array) -> Array:
     layout = model.layout
     depth = layout.of(states, layout.heave)[:, None]
     depth = depth - model.springs.positions * model.turned(layout.of(states, layout.rotation))[:, None]
+    if isinstance(model, SpringModel):
+        depth = depth + model.permanent_settlements(states)
     return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
 
 

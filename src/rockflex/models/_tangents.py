@@ -41,6 +41,10 @@ class RunTangents(NamedTuple):
         The peaks themselves, shape (F,).
     slowest
         The slowest crossing of a condition at an event, over its scale in 1/s; infinite without events.
+    times
+        Of the states of the run, in s, shape (k,).
+    seen, slopes
+        Of what was observed, at these times: (k, r), and its derivatives, (P, k, r).
     """
 
     solution: Solution
@@ -50,6 +54,9 @@ class RunTangents(NamedTuple):
     key: Key
     peak_values: Array
     slowest: float
+    times: Array
+    seen: Array
+    slopes: Array
 
 
 def tangents_of_run(
@@ -61,8 +68,11 @@ def tangents_of_run(
     start: Start = None,
     work_limit: float | None = None,
     parameters: Sequence[Neighbours] = (),
+    observed: Sequence[int] = (),
 ) -> RunTangents:
     """Run a record as `run_all` does, and follow its derivatives.
+
+    `observed` are numbers of tracked quantities whose values over time are wanted, too.
 
     Raises
     ------
@@ -112,7 +122,9 @@ def tangents_of_run(
     for row, some in zip(begins[1:], parameters, strict=True):
         row += sum(some.weights[step] * each.start(some.starts[step])[1] for step, each in some.engines.items())
     one_sided = np.isin(list(system.outputs), list(system.one_sided))
-    tangents = follow_tangents(trace, phase_of, tangent_of, begins, one_sided, at_rest=solution.settled)
+    tangents = follow_tangents(
+        trace, phase_of, tangent_of, begins, one_sided, at_rest=solution.settled, observed=observed
+    )
     rates = np.abs(tangents.rates[~np.isnan(tangents.rates)])
     return RunTangents(
         solution,
@@ -122,6 +134,9 @@ def tangents_of_run(
         cast("Key", trace.keys[tangents.place]),
         trace.high,
         float(rates.min(initial=np.inf)),
+        trace.times * dt,
+        tangents.seen,
+        tangents.slopes,
     )
 
 

@@ -30,7 +30,7 @@ from rockflex.models._motion_between_states import (
 )
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._spring_model import LOADED
+from rockflex.models._spring_model import LOADED, YIELDING, SpringModel
 from rockflex.models._state_layout import HEADER, SIDE
 from rockflex.models._stored_energies import soil_strain, stored_energies
 from rockflex.models._values_at_states import under_more_gravity
@@ -217,10 +217,17 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Energ
         swept, first = swept_elements(model), 4
         if model.springs is not None:
             # The force of a spring that is loaded is that of its stiffness, which is stored, and that of its dashpot.
-            loaded = np.flatnonzero(np.array(part.key[1 : model.springs.n + 1]) == LOADED)
+            branches = np.array(part.key[1 : model.springs.n + 1])
+            loaded = np.flatnonzero((branches == LOADED) | (branches == YIELDING))
             soil[np.ix_(part.rows, loaded)] = model.springs.damping[loaded] * found[:, 4 + loaded]
             first += model.springs.n
         sweeps[part.rows[:, None], swept] = found[:, first:]
+    if isinstance(model, SpringModel) and model.springs.capacity is not None:
+        crushed = np.diff(model.permanent_settlements(states), axis=0)  # while a spring carries its capacity
+        soil += (
+            np.where(crushed != 0.0, np.where(np.isfinite(model.springs.capacity), model.springs.capacity, 0.0), 0.0)
+            * crushed
+        )
     return EnergyBetweenStates(damped, ground, friction, swing, soil, sweeps)
 
 

@@ -17,6 +17,7 @@ from rockflex.foundation.values import Value
 from rockflex.models._element_states import element_forces, element_states
 from rockflex.models._reactions import spring_forces
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._values_at_states import accelerations_at_states
 from rockflex.motion._ground_motion import GroundMotion
@@ -367,6 +368,12 @@ class History(Value):
     def uplifted(self) -> Bools:
         """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
         return self.model.uplifted(self.states)
+
+    @property
+    def permanent_settlement(self) -> Array:
+        """Permanent settlement of each spring in m, shape (n_states, n_springs); none on rigid ground."""
+        model = self.model
+        return model.permanent_settlements(self.states) if isinstance(model, SpringModel) else self.spring_force
 
     @property
     def spring_force(self) -> Array:

@@ -96,6 +96,9 @@ HISTORY: Mapping[str, Output] = {
     "element_elongation": Output("δ", "displacement", "elongation of each element", across="element"),
     "tendon_force": Output("T", "force", "force of each tendon", of="tendons", across="tendon"),
     "edge_uplift": Output("edges", "displacement", "rise of edges", across="edge"),
+    "permanent_settlement": Output(
+        "w_p", "displacement", "permanent settlement of each spring", of="springs", across="spring"
+    ),
     "soil_pressure": Output("p", "stress", "pressure of each spring on the ground", of="springs", across="spring"),
     "bearing_pressure": Output("q", "stress", "static bearing pressure", of="springs"),
     "friction_demand": Output("|ΣF_x|/ΣF_z", "ratio", "friction demand"),
@@ -188,6 +191,14 @@ OUTPUTS: Mapping[str, Output] = {
         "edge down", "displacement", "how far an edge of the base sinks into the ground", "; zero on rigid ground",
         of="springs",
     ),
+    "settlement": Output(
+        "z_end", "displacement", "settlement of the base at the end of the run",
+        ", at the axis of the masses, from the level at which the springs are unloaded", of="springs",
+    ),
+    "max_permanent_settlement": Output(
+        "w_p", "displacement", "largest permanent settlement of a spring", "; zero where springs do not yield",
+        of="springs",
+    ),
     "leaning_push": Output(
         "Σ l g θ/V_b", "ratio", "push of leaning columns on the floors over the base shear",
         ", at the largest |θ| and the largest base shear; zero without leaning mass. The push is neglected, and above "
@@ -235,6 +246,7 @@ OF_TABLES: Mapping[str, Output] = {
     "nominal_limit": Output("θ_nom", "rotation", "nominal limit of overturning"),
     "*_edge_uplift": Output("edge", "displacement", "rise of an edge of the base"),
     "joint_rotation_*": Output("θ_j", "rotation", "rotation of a joint above the base"),
+    "permanent_settlement_*": Output("w_p", "displacement", "permanent settlement of a spring"),
     "spring_force_*": Output("N_j", "force", "upward force of a spring"),
     "distance_km": Output("", "distance", "distance of the station"),
 }
@@ -249,7 +261,7 @@ REACTIONS = ("max_horizontal_reaction", "min_vertical_reaction")
 DEMANDS_OF_SET = (
     "max_rotation", "max_top_displacement", "max_total_top_displacement", "max_story_drift", "max_floor_acceleration",
     "max_base_moment", "max_base_shear", "max_horizontal_reaction", "min_vertical_reaction", "max_tendon_force",
-    "max_slip", "max_edge_uplift", "max_edge_settlement", "max_joint_rotation",
+    "max_slip", "max_edge_uplift", "max_edge_settlement", "max_permanent_settlement", "max_joint_rotation",
 )  # fmt: skip
 """The demands of a set of records."""
 DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment",
@@ -258,7 +270,7 @@ DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_dr
 COMPARED_DEMANDS = (
     "max_rotation", "balance_ratio", "max_top_displacement", "max_total_top_displacement", "max_story_drift",
     "max_floor_acceleration", "max_base_shear", "max_base_moment", "tendon_utilisation", "max_edge_uplift",
-    "max_edge_settlement", "max_slip", "residual_rotation", "max_joint_rotation",
+    "max_edge_settlement", "max_permanent_settlement", "max_slip", "residual_rotation", "max_joint_rotation",
 )  # fmt: skip
 """The demands of a comparison, in the order of its table."""
 

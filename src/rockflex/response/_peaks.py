@@ -27,6 +27,7 @@ from rockflex.models._named_quantities import (
 )
 from rockflex.models._quantities import LIFT, LINEAR, Quantities, joined_quantities
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import HEADER, SIDE, StateLayout
 from rockflex.models._values_at_states import quantities_at_states
 from rockflex.structure._rocking import RockingProperties
@@ -38,6 +39,13 @@ def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> An
     """Return the push Σ l_i g |θ| of leaning columns over the base shear, for largest values of one run or of many."""
     push = properties.leaning_mass * GRAVITY * np.asarray(rotation)
     return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
+
+
+def max_permanent_settlement(model: RockingModel, final: Array) -> float:
+    """Return the largest permanent settlement of a spring in m in the last state of a run; zero on rigid ground."""
+    if not isinstance(model, SpringModel):
+        return 0.0
+    return float(model.permanent_settlements(np.concatenate((np.zeros(HEADER), final))[None]).max())
 
 
 def column_pull(properties: RockingProperties, moment: float) -> float:
@@ -254,6 +262,8 @@ def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks)
         else float(final[model.layout.rotation]) - model.rest.rotation,
         "balance_ratio": float(balance_ratio(model, right, left)),
         "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
+        "settlement": 0.0 if model.springs is None else -float(final[model.layout.heave]),
+        "max_permanent_settlement": max_permanent_settlement(model, final),
         "max_slip": float(peaks.get("slip", 0.0)),
         "residual_slip": float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
         "max_edge_uplift": uplift,

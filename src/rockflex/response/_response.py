@@ -293,6 +293,8 @@ class Response(HtmlTable, Value):
     residual_slip: float
     max_edge_uplift: float
     max_edge_settlement: float
+    settlement: float
+    max_permanent_settlement: float
     leaning_push: float
     column_pull: float
     n_uplifts: int
@@ -337,6 +339,7 @@ class Response(HtmlTable, Value):
     element_energy = _OfHistory[Array]()
     element_state = _OfHistory[Array]()
     joint_rotation = _OfHistory[Array]()
+    permanent_settlement = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()

@@ -65,9 +65,11 @@ LATER: dict[str, Any] = {
     "leaning_push": 0.0,
     "max_joint_rotation": 0.0,
     "column_pull": 0.0,
+    "settlement": 0.0,
+    "max_permanent_settlement": 0.0,
 }  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
-SPRINGS = ("positions", "stiffness", "damping", "area")
+SPRINGS = ("positions", "stiffness", "damping", "area", "capacity")
 FLOOR_MODES = ("heights", "displacement", "force")
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 

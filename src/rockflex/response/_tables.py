@@ -98,6 +98,8 @@ def ground_columns(history: History) -> dict[str, Array]:
         left, right = history.edge_uplift.T
         columns |= {"heave": history.heave, "left_edge_uplift": left, "right_edge_uplift": right}
         columns |= {f"spring_force_{k}": force for k, force in enumerate(history.spring_force.T, 1)}
+        settled = history.permanent_settlement
+        columns |= {f"permanent_settlement_{k}": each for k, each in enumerate(settled.T, 1) if settled.any()}
     return columns
 
 

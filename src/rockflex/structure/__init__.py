@@ -6,13 +6,14 @@ from rockflex.structure._attachment import Attachment
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes
 from rockflex.structure._beam_sections import LumpedMasses
+from rockflex.structure._beds import asce41_bed, gazetas_bed, winkler_bed
 from rockflex.structure._cross_section import Section
 from rockflex.structure._devices import STEELS, STRANDS, Steel, Strand, bar_fuse, strand_tendon, u_plate_fuse
 from rockflex.structure._element_law import Branch, BranchEnd, ElementLaw
 from rockflex.structure._elements import FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
-from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._ground import Ground, Springs
 from rockflex.structure._joint import Joint
 from rockflex.structure._jointed import Jointed
 from rockflex.structure._law_bars import FlagShapedBar, GapBar, MultilinearBar

@@ -1,42 +1,30 @@
 """Derivatives of a run with respect to its record's scale and to parameters of structure, ground and impact law."""
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from rockflex.engine.phase_tangent import CENTRAL, ONE_SIDED
 from rockflex.engine.solution import Excitation
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.models._label import Model, parse_model
-from rockflex.models._tangents import Neighbours, tangents_of_run
+from rockflex.models._quantities import Quantities
+from rockflex.models._tangents import Neighbours, RunTangents, tangents_of_run
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._respond import response_of_solution
 from rockflex.response._response import Response
-from rockflex.response._sensitivity import STEP, Neighbourhood, TiedModel, numbers_with_derivatives
+from rockflex.response._sensitivity import STEP, Neighbourhood, numbers_with_derivatives
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import (
-    InitialState,
-    RockingStructure,
-    check_keywords,
-    check_motion_argument,
-    rocking_properties_of,
-)
+from rockflex.studies._arguments import InitialState, RockingStructure, check_keywords, check_motion_argument
+from rockflex.studies._parameters import SCALE, Subject
 from rockflex.studies._prepared_case import PreparedCase, RunKeywords, RunOptions, has_vertical_motion
 
 if TYPE_CHECKING:
     import pandas as pd
-
-SCALE = "scale"
-ROOTS = ("ground", "impact")
-_STEP = re.compile(r"([A-Za-z_]\w*+)((?:\[\d++\])*+)")
-
-Place = tuple[str | int, ...]
 
 
 class GradientKeywords(RunKeywords, total=False):
@@ -168,13 +156,47 @@ def gradient(
     given: dict[str, Any] = {**options}
     chosen = parse_model(model)
     settings = replace(RunOptions.of(**given), all_yield=True)
-    subject = _Subject(structure, settings)
-    names = parameter_names(structure, **options) if parameters is None else tuple(dict.fromkeys(parameters))
+    subject = Subject(structure, settings)
+    names = subject.names() if parameters is None else tuple(dict.fromkeys(parameters))
     names = tuple(name for name in names if name != SCALE)
-    places = [subject.place_of(name) for name in names]
-    case = subject.case(chosen)
-    nearby = [subject.neighbours(chosen, place, name) for name, place in zip(names, places, strict=True)]
+    for name in names:
+        subject.place_of(name)
+    case, nearby, made = follow(subject, chosen, names, motion)
+    numbers = numbers_with_derivatives(case.tied, nearby, made)
+    return Gradient(
+        response=response_of_solution(case.model, motion.name, replace(made.solution, states=None), case.tracked),
+        parameters=(SCALE, *names),
+        values=np.array([1.0, *(subject.number(name) for name in names)]),
+        logarithmic={name: slope for name, (_, slope) in numbers.items()},
+        slowest=made.slowest,
+    )
+
+
+def follow(
+    subject: Subject,
+    model: Model,
+    names: Sequence[str],
+    motion: GroundMotion,
+    extra: Mapping[str, Quantities] | None = None,
+) -> tuple[PreparedCase, list[Neighbourhood], RunTangents]:
+    """Run a motion, and follow its derivatives by the scale and by the numbers of some names.
+
+    Of `extra`, further quantities by name, the values over time are followed as well.
+
+    Returns
+    -------
+    case
+        What was run.
+    neighbourhoods
+        Of each name, for `numbers_with_derivatives`.
+    tangents
+        The run and its derivatives.
+    """
+    case = replace(subject.case(model), extra=extra)
+    nearby = [subject.neighbours(model, name, extra) for name in names]
     shakes = has_vertical_motion(motion)
+    places = [case.tracked.peaks.places[name] for name in extra or ()]
+    observed = [row for place in places if isinstance(place, slice) for row in range(place.start, place.stop)]
     made = tangents_of_run(
         case.engine,
         Excitation(motion.acceleration, motion.vertical if shakes else None),
@@ -190,21 +212,10 @@ def gradient(
             )
             for cases, weights in nearby
         ],
+        observed=observed,
     )
-    nearby_tied = [Neighbourhood({k: _tied(each) for k, each in cases.items()}, weights) for cases, weights in nearby]
-    numbers = numbers_with_derivatives(_tied(case), nearby_tied, made)
-    values = [1.0, *(float(found) if np.ndim(found := subject.value(place)) == 0 else np.nan for place in places)]
-    return Gradient(
-        response=response_of_solution(case.model, motion.name, replace(made.solution, states=None), case.tracked),
-        parameters=(SCALE, *names),
-        values=np.array(values),
-        logarithmic={name: slope for name, (_, slope) in numbers.items()},
-        slowest=made.slowest,
-    )
-
-
-def _tied(case: PreparedCase) -> TiedModel:
-    return TiedModel(case.model, case.engine, case.tracked)
+    tied = [Neighbourhood({k: each.tied for k, each in cases.items()}, weights) for cases, weights in nearby]
+    return case, tied, made
 
 
 def parameter_names(
@@ -223,150 +234,4 @@ def parameter_names(
     ('story_height', 'story_mass', 'base_mass', 'stiffness_ratio', 'period', 'aspect_ratio', 'damping_ratio')
     """
     given: dict[str, Any] = {**options}
-    return _Subject(structure, RunOptions.of(**given)).names()
-
-
-class _Subject:
-    """A structure with the ground and the impact law of its runs, of which numbers are changed."""
-
-    def __init__(self, structure: RockingStructure | RockingProperties, options: RunOptions) -> None:
-        rocking_properties_of(structure)
-        self.structure, self.options = structure, options
-        self.roots: dict[str, Any] = {"structure": structure, "ground": options.ground, "impact": options.impact}
-
-    def case(self, model: Model) -> PreparedCase:
-        """The runs of a model of the structure."""
-        return self.options.case(model, rocking_properties_of(self.structure))
-
-    def names(self) -> tuple[str, ...]:
-        """The names of all numbers."""
-        found = dict[str, None]()
-        for root, subject in self.roots.items():
-            prefix = "" if root == "structure" else f"{root}."
-            for name in _number_names(subject):
-                found.setdefault(prefix + name.removeprefix("structure."))
-        kept = list[str]()
-        for name in found:
-            try:
-                self.place_of(name)
-                self.changed(self.place_of(name), STEP)
-            except InputError:
-                continue
-            kept.append(name)
-        return tuple(kept)
-
-    def place_of(self, name: str) -> Place:
-        """The place of a number, by its name."""
-        root, _, rest = name.partition(".")
-        place: Place = _place(name) if root not in ROOTS or not rest else (root, *_place(rest))
-        if place[0] not in ROOTS:
-            while True:
-                try:
-                    _value(self.structure, place)
-                    break
-                except LookupError:
-                    inner = ("structure",) * (1 + sum(step == "structure" for step in place))
-                    place = (*inner, *(step for step in place if step != "structure"))
-                    try:
-                        _value(self.structure, inner)
-                    except LookupError:
-                        raise self._unknown(name) from None
-            place = ("structure", *place)
-        try:
-            value = np.asarray(_value(self.roots[str(place[0])], place[1:]), dtype=float)
-        except (LookupError, TypeError, ValueError):
-            raise self._unknown(name) from None
-        if not (np.isfinite(value).all() and value.any()):
-            raise InputError(
-                f"{name} is {shown(value.tolist())}, but a derivative is found from relative changes: it must be "
-                "finite and not zero. Give it a small value.",
-                field="parameters",
-            )
-        return place
-
-    def _unknown(self, name: str) -> InputError:
-        known = [each for root in self.roots for each in _number_names(self.roots[root])]
-        return InputError(
-            f"There is no number {shown(name)} in the structure, its ground or its impact law. Expected a name as of "
-            f"the arguments, such as {', '.join(known[:6])}.",
-            field="parameters",
-        )
-
-    def value(self, place: Place) -> Any:
-        """The number at a place."""
-        return _value(self.roots[str(place[0])], place[1:])
-
-    def changed(self, place: Place, by: float) -> "_Subject":
-        """The same with another number: its logarithm is larger by so much."""
-        root = str(place[0])
-        made = _changed(self.roots[root], place[1:], float(np.exp(by)))
-        if root == "structure":
-            return _Subject(made, self.options)
-        return _Subject(self.structure, replace(self.options, **{root: made}))
-
-    def neighbours(self, model: Model, place: Place, name: str) -> tuple[dict[int, PreparedCase], Mapping[int, float]]:
-        """The runs at a few steps of a number, on both sides or, at the end of its range, on one."""
-        refused: InputError | None = None
-        backwards = {-step: -weight for step, weight in ONE_SIDED.items()}
-        for weights in (CENTRAL, ONE_SIDED, backwards):
-            try:
-                return {step: self.changed(place, step * STEP).case(model) for step in weights}, weights
-            except InputError as error:
-                refused = error
-        raise InputError(f"{name} cannot be changed by {STEP:g} of its value: {refused}", field="parameters")
-
-
-def _place(name: str) -> Place:
-    """The steps of a name such as elements[0].stiffness."""
-    found = list[str | int]()
-    for part in name.split("."):
-        step = _STEP.fullmatch(part)
-        if step is None:
-            raise InputError(
-                f"{shown(name)} is not the name of a number. Expected one such as period or elements[0].stiffness.",
-                field="parameters",
-            )
-        found.append(step[1])
-        found += [int(place) for place in re.findall(r"\d++", step[2])]
-    return tuple(found)
-
-
-def _value(subject: Any, place: Place) -> Any:
-    """What is at a place; raises a LookupError if there is nothing."""
-    for step in place:
-        if isinstance(step, int):
-            subject = subject[step]
-        elif is_dataclass(subject) and step in {each.name for each in fields(subject)}:
-            subject = getattr(subject, step)
-        else:
-            raise LookupError(step)
-    return subject
-
-
-def _changed(subject: Any, place: Place, factor: float) -> Any:
-    """The same with the number at a place multiplied."""
-    if not place:
-        return np.asarray(subject) * factor if np.ndim(subject) else subject * factor
-    step, rest = place[0], place[1:]
-    if isinstance(step, str):
-        return replace(subject, **{step: _changed(getattr(subject, step), rest, factor)})
-    if isinstance(subject, np.ndarray):
-        made = subject.copy()
-        made[step] *= factor
-        return made
-    return (*subject[:step], _changed(subject[step], rest, factor), *subject[step + 1 :])
-
-
-def _number_names(subject: Any) -> Iterator[str]:
-    """The names of the numbers of a value made of dataclasses, tuples and arrays, that are not whole."""
-    if not is_dataclass(subject) or isinstance(subject, type):
-        return
-    for each in fields(subject):
-        value = getattr(subject, each.name)
-        if isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype == float):
-            yield each.name
-        elif isinstance(value, tuple):
-            for place, item in enumerate(value):  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
-                yield from (f"{each.name}[{place}].{name}" for name in _number_names(item))
-        else:
-            yield from (f"{each.name}.{name}" for name in _number_names(value))
+    return Subject(structure, RunOptions.of(**given)).names()

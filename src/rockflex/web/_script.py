@@ -213,7 +213,9 @@ def _springs_code(table: SpringsTable | SpringBedTable) -> str:
     if isinstance(table, SpringsTable):
         edges = "[side * properties.half_width - properties.eccentricity for side in (-1, 1)]"
         positions = edges if table.positions is None else _python_literal(table.positions)
-        named = _python_named_arguments({"stiffness": table.stiffness, "damping": table.damping})
+        named = _python_named_arguments(
+            {"stiffness": table.stiffness, "damping": table.damping, "capacity": table.capacity}
+        )
         return f"rf.Springs({positions}, {named})"
     named = _python_named_arguments(table.model_dump(exclude={"heave_damping_ratio", "method"}))
     maker = f"{table.method or 'asce41'}_bed" if table.subgrade_modulus is None else "winkler_bed"
