@@ -33,7 +33,7 @@ LOWEST_TESTS := engine unit/test_structure_file.py unit/test_motion_readers.py u
 	unit/test_fragility_lognormal.py unit/test_plot_history.py unit/test_run_report.py unit/test_cli_run.py
 
 .PHONY: demo figures test test-all say-test say-test-all browser test-portable test-sanitized test-lowest test-newest wheels \
-	check lint types docs validate bench records clean help
+	check lint types docs links validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
@@ -119,19 +119,21 @@ wheels:  ## a wheel in dist for each Python found, tested in an empty environmen
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n auto --dist loadgroup -q -m "not slow and not web"
 
-lint: $(READY)  ## ruff: style, docstrings, error messages; and at how many places one thing is said
+lint: $(READY)  ## ruff: style, docstrings, error messages; spelling; and at how many places one thing is said
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell
 	$(BIN)/python scripts/count_places.py
 
 types: $(READY)  ## pyright (strict) on src
 	$(BIN)/basedpyright --pythonpath $(BIN)/python src
 
-docs: $(READY)  ## build the documentation in build/docs; warnings are errors
+docs: $(READY)  ## build the documentation in build/docs; what its code has not changed is not computed again
 	$(EDITABLE) '.[docs]'
-	rm -rf docs/gallery docs/api/generated docs/reproduced docs/_drawings
-	$(BIN)/rockflex reproduce --out docs/reproduced
-	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
+	$(BIN)/python scripts/build_docs.py
+
+links: docs  ## try every link of the documentation to other sites
+	$(BIN)/python scripts/build_docs.py --builder linkcheck
 
 $(RISK)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(RISK)

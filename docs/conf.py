@@ -24,17 +24,32 @@ extensions = [
     "drawings",
     "sphinxcontrib.katex",
     "figures",
+    "navigation",
     "reference",
     "signatures",
 ]
-exclude_patterns = ["_build", "_extensions", "_templates", "joss", "gallery/*.py", "gallery/*.ipynb"]
+exclude_patterns = [
+    "_build",
+    "_extensions",
+    "_templates",
+    "joss",
+    "gallery/*.py",
+    "gallery/*.ipynb",
+]
 templates_path = ["_templates"]
 nitpicky = True
 
-# In docstrings a name in single backticks is a link where it can be one; see _extensions/docstrings.py.
+# In docstrings a name in single backticks is a link where it can be one;
+# see _extensions/docstrings.py.
 default_role = "py:obj"
 
-myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = [
+    "amsmath",
+    "attrs_inline",
+    "colon_fence",
+    "deflist",
+    "dollarmath",
+]
 myst_heading_anchors = 3
 
 autosummary_generate = True
@@ -48,7 +63,8 @@ napoleon_use_rtype = False
 napoleon_preprocess_types = False
 napoleon_attr_annotations = False
 
-# Scripts come with sphinxcontrib-katex; style and fonts of the same version of KaTeX are in _static: no network.
+# Scripts come with sphinxcontrib-katex; style and fonts of the same version
+# of KaTeX are in _static: no network.
 html_math_renderer = "katex"
 katex_css_path = "katex/katex.min.css"
 html_theme = "furo"
@@ -67,6 +83,10 @@ sphinx_gallery_conf = {
     "ignore_pattern": r"/_",
     "image_scrapers": ("figures.scrape",),
     "within_subsection_order": "figures.Order",
+    "parallel": True,
+    "backreferences_dir": "gallery/used",
+    "doc_module": ("rockflex",),
+    "reference_url": {"rockflex": None},
     "download_all_examples": False,
     "show_signature": False,
     "remove_config_comments": True,

@@ -60,36 +60,44 @@ def structure_of(
     )
 
 
-def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, Float, list[Freedom]]:
-    """Mass, stiffness and degrees of freedom of the plane model in memory, with a fixed base.
+def matrices_of(
+    ops: Any,
+    axis: float = 0.0,
+    base: float = 0.0,
+) -> tuple[Float, Float, list[Freedom]]:
+    """Mass, stiffness and degrees of freedom of the plane model in memory.
 
-    `axis` is the x of its axis and `base` the y of its base in m. OpenSees warns that the mass matrix is singular if
-    some degrees of freedom have no mass: the step that makes it form the matrix cannot be solved, and need not be.
-    Multi-point constraints (equalDOF, rigidLink) merge equations, and are refused.
+    Its base is fixed; `axis` is the x of its axis and `base` the y of its
+    base in m. OpenSees warns that the mass matrix is singular if some degrees
+    of freedom have no mass: the step that makes it form the matrix cannot be
+    solved, and need not be. Multi-point constraints (equalDOF, rigidLink)
+    merge equations, and are refused.
     """
     ops.wipeAnalysis()
     ops.constraints("Plain")
     ops.numberer("Plain")
     ops.system("FullGeneral")  # the only one that printA can print
     ops.algorithm("Linear")
-    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # otherwise OpenSees warns that there is none
+    ops.integrator("GimmeMCK", 0.0, 0.0, 1.0)  # without one OpenSees warns
     ops.analysis("Transient")
     found: list[Float] = []
-    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):  # of mass, damping and stiffness in the printed matrix
+    # factors of mass, damping and stiffness in the printed matrix
+    for factors in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
         ops.integrator("GimmeMCK", *factors)
         ops.analyze(1, 0.0)
         size = ops.systemSize()
-        found.append(np.array(ops.printA("-ret"), dtype=np.float64).reshape(size, size))
+        printed = np.array(ops.printA("-ret"), dtype=np.float64)
+        found.append(printed.reshape(size, size))
     stiffness, mass = found
     freedoms: dict[int, Freedom] = {}
     for node in ops.getNodeTags():
         x, y = ops.nodeCoord(node)
-        for kind, equation in zip(("x", "y", "turn"), ops.nodeDOFs(node), strict=True):
+        equations = ops.nodeDOFs(node)
+        for kind, equation in zip(("x", "y", "turn"), equations, strict=True):
             if equation in freedoms:
-                raise ValueError(
-                    f"Node {node} shares an equation with another. Model floors without multi-point constraints."
-                )
-            if equation >= 0:  # fixed degrees of freedom have a negative one
+                shares = f"Node {node} shares an equation with another"
+                raise ValueError(f"{shares}: use no constraints.")
+            if equation >= 0:  # fixed degrees of freedom have none
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]
 

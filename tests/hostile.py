@@ -144,6 +144,13 @@ def structures() -> Calls:
             rf.rocking_frame,
             {"n_columns": 4, "column_width": 1.6, "column_height": 9.6, "column_mass": 6e4, "cap_mass": 2.4e5},
         ),
+        "Joint": (rf.Joint, {"height": 6.0, "half_width": 1.0}),
+        "Jointed": (rf.Jointed, {"structure": rf.Frame(**FRAME), "joints": rf.Joint(3.0, 1.0)}),
+        "Podium": (
+            rf.Podium,
+            {"structure": rf.Frame(**FRAME), "n_columns": 3, "column_width": 0.6, "column_height": 4.0}
+            | {"column_mass": 5e3},
+        ),
         "OneSided": (rf.OneSided, {"structure": rf.Frame(**FRAME), "restitution": 0.4, "side": "right"}),
         "OneSided block": (
             rf.OneSided,

@@ -10,6 +10,7 @@ from typing import Any
 
 from docutils import nodes
 from pydantic import BaseModel
+from signatures import parameter_types
 from sphinx.application import Sphinx
 from sphinx.util.nodes import make_refnode
 
@@ -39,9 +40,25 @@ def escape(app: Sphinx, what: str, name: str, obj: object, options: object, line
                 "" if field.is_required() else f"; ``{field.get_default(call_default_factory=True)!r}`` by default"
             )
             lines += [key, f"    {valid_value_description(field)}{default}"]
+    if what in ("function", "method", "class"):
+        lines[:] = _with_types(lines, parameter_types(obj))
     pieces = EXAMPLE.split("\n".join(lines))
     pieces[::2] = [_escaped(piece) for piece in pieces[::2]]
     lines[:] = "".join(pieces).split("\n")
+
+
+def _with_types(lines: list[str], types: dict[str, str]) -> list[str]:
+    """Return the lines of a docstring, each entry of its parameters with its type, where it states none."""
+    found, inside = list[str](), False
+    for line, rule in zip(lines, [*lines[1:], ""], strict=True):
+        if rule and not rule.strip("-"):
+            inside = line in ("Parameters", "Attributes")
+        names = line.split(", ")
+        kinds = {types.get(name) for name in names}
+        if inside and line.replace(", ", "").isidentifier() and len(kinds) == 1 and None not in kinds:
+            line += f" : {kinds.pop()}"
+        found.append(line)
+    return found
 
 
 def _escaped(text: str) -> str:

@@ -17,17 +17,24 @@ SCRIPTS = {
     "models_compared": ("history", 3),
     "uplift_and_modes": ("ratios", 0),
     "shenton_map": ("figure", 0),
+    "cabinet": ("curves", 1),
+    "facade": ("drawing", 0),
+    "facade_with_ties": ("history", 0),
+    "columns_under_a_cap": ("figure", 0),
+    "podium": ("history", 0),
+    "wall_of_segments": ("figure", 0),
     "chimney": ("history", 4),
     "restrained_pier": ("history", 0),
     "controlled_rocking": ("flag", 0),
     "hybrid_wall": ("flag", 0),
     "nine_story_frame": ("profiles", 0),
     "pier_on_soil": ("soil", 0),
+    "settling_footing": ("figure", 0),
     "fragility_of_a_frame": ("curves", 0),
     "ida_with_resurrections": ("curves", 0),
 }
 SIZE, DPI = (400, 280), 150  # pixels of a thumbnail, and dots an inch
-PANELS: dict[str, Image.Image] = {}
+PANELS = Path("gallery", "images", "panels")
 
 
 class Order:
@@ -56,7 +63,9 @@ def scrape(block: tuple[Any, ...], block_vars: dict[str, Any], gallery_conf: dic
             figure.savefig(path, dpi=DPI, bbox_inches="tight")
             paths.append(path)
             if stem in SCRIPTS and SCRIPTS[stem][0] == name:
-                PANELS[stem] = panel(figure, SCRIPTS[stem][1])
+                target = Path(gallery_conf["src_dir"]) / PANELS / f"{stem}.png"
+                target.parent.mkdir(parents=True, exist_ok=True)
+                panel(figure, SCRIPTS[stem][1]).save(target)
     return figure_rst(paths, gallery_conf["src_dir"])
 
 
@@ -78,9 +87,10 @@ def panel(figure: Figure, place: int) -> Image.Image:
 
 def write_thumbnails(app: Sphinx) -> None:
     """Put the panels in the place of the thumbnails, which show whole figures."""
-    for stem, image in PANELS.items():
-        target = Path(app.srcdir) / "gallery" / "images" / "thumb" / f"sphx_glr_{stem}_thumb.png"
-        ImageOps.pad(image, SIZE, color="white").save(target)
+    folder = Path(app.srcdir) / PANELS
+    for path in folder.glob("*.png"):
+        target = folder.parent / "thumb" / f"sphx_glr_{path.stem}_thumb.png"
+        ImageOps.pad(Image.open(path), SIZE, color="white").save(target)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

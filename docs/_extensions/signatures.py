@@ -51,6 +51,22 @@ def _written(function: Any, bound: bool) -> tuple[str, str | None] | None:
     return f"({ast.unparse(arguments)})", result
 
 
+def parameter_types(obj: Any) -> dict[str, str]:
+    """Return the types of the parameters of a function, or of the fields of a class, for readers, as in the source."""
+    if isinstance(obj, type):
+        return {
+            node.target.id: ast.unparse(_plain(node.annotation))
+            for base in reversed(obj.__mro__)
+            for node in _body(base)
+            if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
+        }
+    tree = _parsed(inspect.unwrap(obj))
+    if not isinstance(tree, ast.FunctionDef):
+        return {}
+    arguments = [*tree.args.posonlyargs, *tree.args.args, *tree.args.kwonlyargs]
+    return {each.arg: ast.unparse(_plain(each.annotation)) for each in arguments if each.annotation is not None}
+
+
 def _value(default: ast.expr | None, constants: dict[str, Any]) -> ast.expr | None:
     """A default; the number itself in place of the name of a constant."""
     value = None
@@ -111,12 +127,7 @@ def _fields(obj: Any) -> str | None:
     """Signature of a dataclass, its annotations from the source."""
     if "__dataclass_fields__" not in vars(obj) or _own_init(obj) is not None:
         return None
-    notes = {
-        node.target.id: ast.unparse(_plain(node.annotation))
-        for base in reversed(obj.__mro__)
-        for node in _body(base)
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
-    }
+    notes = parameter_types(obj)
     parameters, starred = [], False
     for name, parameter in inspect.signature(obj).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:

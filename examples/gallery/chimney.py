@@ -2,8 +2,9 @@
 A chimney that can rock
 =======================
 
-The concrete chimney of Section 4.1.1 of the paper: 200 m high, tapered, 16 m wide at its base, with five Rayleigh–Ritz
-modes. It rocks by three thousandths of a radian, and its higher modes govern the base shear.
+The concrete chimney of Section 4.1.1 of the paper: 200 m high, tapered, 16 m
+wide at its base, with five Rayleigh–Ritz modes. It rocks by three thousandths
+of a radian, and its higher modes govern the base shear.
 """
 
 import rockflex as rf
@@ -22,7 +23,13 @@ section = rf.plot_tower(tower)
 
 # %%
 motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
-responses = [rf.simulate(tower, motion, model) for model in ("5DOF-fixed", "2DOF-S", "6DOF-S")]
+responses = [
+    rf.simulate(tower, motion, model)
+    for model in ("5DOF-fixed", "2DOF-S", "6DOF-S")
+]
 history = rf.plot_history(responses, title="Chimney, El Centro ×2")
 for r in responses:
-    print(f"{r.model:10} M_b {r.max_base_moment / 1e6:6.0f} MN m   V_b {r.max_base_shear / 1e6:5.1f} MN")
+    print(
+        f"{r.model:10} M_b {r.max_base_moment / 1e6:6.0f} MN m   V_b "
+        f"{r.max_base_shear / 1e6:5.1f} MN"
+    )

@@ -27,7 +27,8 @@ response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
 print(response)
 
 # %%
-# The base is uplifted in the shaded intervals. While it rocks, its moment is nearly constant: that limits the forces.
+# The base is uplifted in the shaded intervals. While it rocks, its moment is
+# nearly constant: that limits the forces.
 history = rf.plot_history(response)
 
 # %%

@@ -2,8 +2,9 @@
 Fragility of a frame
 ====================
 
-One frame under 44 recorded components at four scales, with one mode and with all modes: the probabilities of rocking
-and overturning, and the rotations in between.
+One frame under 44 recorded components at four scales, with one mode and with
+all modes: the probabilities of rocking and overturning, and the rotations in
+between.
 """
 
 import math
@@ -24,11 +25,18 @@ drawing = rf.plot_structure(frame)
 
 # %%
 suite = rf.load_suite("fema-p695-far-field")
-runs = rf.run_cloud({"#1": frame}, suite, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0, 2.0, 4.0), free_vibration="settle")
+runs = rf.run_cloud(
+    {"#1": frame},
+    suite,
+    ["2DOF-S", "MDOF-S"],
+    scales=(0.5, 1.0, 2.0, 4.0),
+    free_vibration="settle",
+)
 curves = rf.plot_fragility(runs, confidence=0.9, overturning=True)
 
 # %%
-# The rotations of the runs that rocked without overturning; crosses at the top overturned.
+# The rotations of the runs that rocked without overturning; crosses at the
+# top overturned.
 clouds = rf.plot_clouds(runs)
 
 # %%
@@ -36,4 +44,7 @@ clouds = rf.plot_clouds(runs)
 for fits in rf.fit_clouds(runs, measure="pgv"):
     p = fits.outcomes.probabilities(0.8)
     limit = fits.outcomes.exceedance(0.8, 0.02)
-    print(f"{fits.model} at 0.8 m/s: overturning {p.overturning:.2f}, θ > 0.02 rad {limit:.2f}")
+    print(
+        f"{fits.model} at 0.8 m/s: overturning {p.overturning:.2f}, θ > 0.02 "
+        f"rad {limit:.2f}"
+    )

@@ -94,6 +94,7 @@ from .plot import plot_set as plot_set
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
 from .plot import plot_structure as plot_structure
+from .plot import plot_tornado as plot_tornado
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
@@ -117,6 +118,7 @@ from .response import PushoverEvent as PushoverEvent
 from .response import RecordSet as RecordSet
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
+from .response import Sensitivity as Sensitivity
 from .response import check as check
 from .response import to_matlab as to_matlab
 from .response import to_netcdf as to_netcdf
@@ -136,6 +138,8 @@ from .structure import Frame as Frame
 from .structure import FrictionDamper as FrictionDamper
 from .structure import GapBar as GapBar
 from .structure import Ground as Ground
+from .structure import Joint as Joint
+from .structure import Jointed as Jointed
 from .structure import Leaning as Leaning
 from .structure import LumpedMasses as LumpedMasses
 from .structure import LumpedStructure as LumpedStructure
@@ -145,6 +149,7 @@ from .structure import MultilinearBar as MultilinearBar
 from .structure import OneSided as OneSided
 from .structure import PinnedBeam as PinnedBeam
 from .structure import Pivot as Pivot
+from .structure import Podium as Podium
 from .structure import Restrained as Restrained
 from .structure import RitzShapes as RitzShapes
 from .structure import RockingProperties as RockingProperties
@@ -180,19 +185,25 @@ from .structure import winkler_bed as winkler_bed
 from .structure.file import read_structure as read_structure
 from .studies import Case as Case
 from .studies import CombinedPeaks as CombinedPeaks
+from .studies import Gradient as Gradient
+from .studies import Identification as Identification
 from .studies import InitialState as InitialState
 from .studies import OverturningScales as OverturningScales
 from .studies import Records as Records
 from .studies import SecondMode as SecondMode
+from .studies import Tornado as Tornado
 from .studies import compare as compare
 from .studies import estimate_time as estimate_time
 from .studies import fill_study as fill_study
 from .studies import frequency_ratios as frequency_ratios
+from .studies import gradient as gradient
+from .studies import identify as identify
 from .studies import load_study as load_study
 from .studies import modal_combination as modal_combination
 from .studies import moment_rotation as moment_rotation
 from .studies import overturning_scales as overturning_scales
 from .studies import overturning_spectrum as overturning_spectrum
+from .studies import parameter_names as parameter_names
 from .studies import pushover as pushover
 from .studies import rocking_spectrum as rocking_spectrum
 from .studies import run_study as run_study
@@ -200,6 +211,7 @@ from .studies import running as running
 from .studies import simulate as simulate
 from .studies import simulate_many as simulate_many
 from .studies import simulate_set as simulate_set
+from .studies import tornado as tornado
 from .studies.cloud import CloudStudy as CloudStudy
 from .studies.cloud import run_cloud as run_cloud
 from .studies.design import BestDesign as BestDesign

@@ -24,6 +24,7 @@ OUTSIDE = {
     "zero, positive or infinite": {"a negative number": -1.0},
     "finite": {"inf": math.inf},
     "from 0 to below 1": {"a negative number": -0.01, "one": 1.0, "inf": math.inf},
+    "from 0 to 1": {"a negative number": -0.01, "more than one": 1.01, "inf": math.inf},
     "flag": {"one": 1, "a list": [True]},
     "whole": {"half a number": 1.5, "a float": 2.0, "inf": math.inf},
     "row": {"nothing": [], "one that is NaN": [1.0, math.nan], "one that is a text": [1.0, "2"], "a boolean": True},

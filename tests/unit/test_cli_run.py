@@ -374,6 +374,7 @@ def test_units_cover_every_number_of_a_run():
         "balance_ratio",
         "guarded_impacts",
         "leaning_push",
+        "column_pull",
     }
     named = {name.removesuffix("*") for name in _run_results.UNITS}
     row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]

@@ -171,7 +171,7 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
         (["--impact", "restitution"], 'The impact law "restitution" needs its coefficient. Give restitution, a number'),
         (["--restitution", 0.5], "A restitution of 0.5 was given, but the impact law is the model's own. Choose the"),
         (["--impact", "complete", "--restitution", 0.5], "but the impact law is 'complete'. Choose the impact law"),
-        (["--impact", "restitution", "--restitution", 1.5], "The restitution e must lie from 0 to 1, but 1.5 was"),
+        (["--impact", "restitution", "--restitution", 1.5], "must lie in [0, 1], but 1.5 was"),
         (["--bw-exponent", 4], "The hysteresis needs its yield displacement. Give --yield-displacement DY in m."),
         (["--yield-displacement", -1], "--yield-displacement must be a positive, finite number in m, but -1.0 was"),
         ([*YIELDING, "--bw-exponent", 0.5], "--bw-exponent must be at least 1, but 0.5 was given."),

@@ -21,6 +21,7 @@ PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("howto/*.md"), *DOCS.glob("theory
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)")
 INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
 PRIVATE = re.compile(r"\brockflex(?:\.\w+)*\._\w|\brf\._\w|\bimport _\w")
+GUIDES = [page for page in PAGES if page.parent.name == "howto" and page.stem != "index"]
 FEW = [f"FF-{number}-*" for number in (1, 3, 5, 9, 10, 19)]  # of an example's records: some stand still, some fall
 PLACES = ("studies", "engine", "papers.silva_stojadinovic_2024.population")  # of names that the front does not have
 GENERATED = ("gallery/", "../gallery/")
@@ -91,6 +92,20 @@ def test_links_lead_somewhere(page):
         if not known:
             missing.append(target)
     assert missing == []
+
+
+@pytest.mark.parametrize("page", GUIDES, ids=lambda page: page.stem)
+def test_a_guide_has_the_form_of_a_guide(page):
+    """A question, a picture, what to do, where it fails, and what comes next; short enough to be read."""
+    text = page.read_text("utf-8")
+    title, _, rest = text.partition("\n\n")
+    assert re.fullmatch(r"# .*\?", title)
+    assert rest.startswith(("```{drawing}\n", "![")), "the picture comes first"
+    assert text.rindex("\n## Where it fails\n") < text.index("\n## What next\n")
+    prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    assert len(prose.split()) <= 900
+    code = re.findall(r"^```(?:python|toml|bash|sql)\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+    assert max((len(line) for block in code for line in block.splitlines()), default=0) <= 78
 
 
 def listed() -> list[str]:

@@ -225,8 +225,8 @@ def test_the_laws_of_the_library_are_values():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        ((-0.1,), "The restitution e must lie from 0 to 1, but -0.1 was given."),
-        ((1.0000001,), "The restitution e must lie from 0 to 1, but 1.0000001 was given. It is the ratio"),
+        ((-0.1,), "e must lie in [0, 1], but -0.1 was given."),
+        ((1.0000001,), "e must lie in [0, 1], but 1.0000001 was given. It is the ratio"),
         ((0.5, "brief"), "shortest_excursion must be a number in s, but 'brief' was given."),
     ],
 )

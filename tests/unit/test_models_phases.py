@@ -9,7 +9,8 @@ from builders import make_frame
 from rockflex import BoucWen, Tendon
 from rockflex.models import Model
 from rockflex.models._elements import base_equations_of
-from rockflex.models._linear_system import linear_system_base, linear_system_of
+from rockflex.models._linear_bases import linear_system_base
+from rockflex.models._linear_system import linear_system_of
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._quantities import Quantities
 from rockflex.models._rigid_ground_system import system_on_rigid_ground

@@ -177,6 +177,22 @@ def test_the_report_of_a_set(tmp_path):
     assert caught.value.field == "friction"
 
 
+def test_the_report_of_a_set_draws_the_target_of_its_records(tmp_path):
+    suite = rf.load_suite("fema-p695-far-field")
+    chosen = suite.select(rf.ec8_spectrum(2.5, "C"), 3, (0.2, 1.0))
+    found = rf.simulate_set(FRAME, chosen, "2DOF-S", rule="ec8")
+    text = rf.write_report(found, tmp_path / "set.html", selection=chosen).read_text("utf-8")
+    without = rf.write_report(found, tmp_path / "bare.html").read_text("utf-8")
+    assert (text.count("<svg"), without.count("<svg")) == (2, 1)
+    period = 2.0 * np.pi / FRAME.rocking().omega[0]
+    axes = rf.plot_selection(chosen, period=period).axes
+    assert all(any(np.allclose(line.get_xdata(), period) for line in each.get_lines()) for each in axes)
+    for given, field in ((found, chosen.target), (found.responses[0], chosen)):
+        with pytest.raises(rf.InputError) as caught:
+            rf.write_report(given, tmp_path / "wrong.html", selection=field)
+        assert caught.value.field == "selection"
+
+
 def test_a_changed_table_changes_nothing_else():
     found = rf.simulate_set(FRAME, pulses(3), "2DOF-S")
     largest = found.statistics.loc["max_rotation", "worst"]

@@ -25,14 +25,20 @@ from rockflex.response._respond import response_of_solution
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 QUANTITIES = (
-    "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
+    "time", "sensitivity", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement",
+    "modal_velocity",
     "top_displacement", "base_moment", "base_shear", "uplift_times", "impact_times", "story_drift", "story_shear",
     "floor_acceleration", "modal_acceleration", "rotation_acceleration", "yielding", "horizontal_reaction",
     "vertical_reaction", "friction_demand", "required_friction", "energy", "tendon_force", "total_top_displacement",
     "total_floor_displacement", "element_force", "element_elongation", "element_energy", "element_state",
     "slip", "slip_velocity", "heave", "edge_uplift", "spring_force", "vertical_ground_acceleration", "uplifted",
 )  # fmt: skip
-KINDS = {"energy": "rf.EnergyLedger", "required_friction": "float", "uplifted": "NDArray[np.bool_]"}
+KINDS = {
+    "energy": "rf.EnergyLedger",
+    "sensitivity": "rf.Sensitivity",
+    "required_friction": "float",
+    "uplifted": "NDArray[np.bool_]",
+}
 METHODS = (
     "required_friction_excluding_impacts",
     "sliding_time",
@@ -72,7 +78,7 @@ def test_no_quantity_is_forgotten():
     """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
     own = [(name, kind) for name, kind in vars(rf.History).items() if not name.startswith("_")]
     public = {name for name, kind in own if isinstance(kind, property | cached_property)}
-    assert public == {*QUANTITIES, "soil_pressure", "bearing_pressure"}  # which rigid ground has not
+    assert public == {*QUANTITIES, "soil_pressure", "bearing_pressure", "joint_rotation"}  # which not all have
     methods = {name for name, kind in own if isfunction(kind)}
     assert methods == set(METHODS)
     for name in (*QUANTITIES, *METHODS):

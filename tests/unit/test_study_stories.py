@@ -155,7 +155,7 @@ def test_a_design_search_keeps_the_stories_and_says_what_it_varies():
     response = rf.simulate(moved, SUITE[row["motion"]].scaled(row["scale"]), free_vibration="settle")
     assert row["max_ductility"] == pytest.approx(response.ductility.max(), rel=1e-9)
     assert rf.best_design(runs, [requirement], rf.DesignCost(half_width=1.0)).designs[requirement.label].notna().any()
-    with pytest.raises(rf.InputError, match=r"no yielding dissipator.*strengths of stories.*MonteCarloStudy"):
+    with pytest.raises(rf.InputError, match=r"no fuse.*strengths of stories.*MonteCarloStudy"):
         rf.search_design(
             held, SUITE, rf.DesignSearch([1.2], dissipator_factors=[0.5, 1.0]), [requirement],
             rf.DesignCost(half_width=1.0),

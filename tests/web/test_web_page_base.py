@@ -15,7 +15,7 @@ from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
 
-NAMES = ["1: Tendon at 0 m", "2: Yielding dissipator at −1.3 m", "3: Yielding dissipator at 1.3 m"]
+NAMES = ["1: Tendon at 0 m", "2: Fuse at −1.3 m", "3: Fuse at 1.3 m"]
 
 
 def held(visitor) -> list[dict]:

@@ -63,9 +63,14 @@ def test_a_line_says_whether_it_rocks(visit) -> None:
     visitor.wait_for_results()
     assert f"{100 * visitor.value('[data-three=rotation]') / share:.3g}" in line.inner_text()
     visitor.fill("few.scale", "0.01")
-    visitor.page.wait_for_selector("#rocks[data-status=no_uplift]:not(.overturned)")
+    visitor.page.wait_for_selector("#rocks.good[data-status=no_uplift]")
     visitor.fill("few.scale", "20")
-    visitor.page.wait_for_selector("#rocks.overturned")
+    visitor.page.wait_for_selector("#rocks.bad")
+    visitor.page.locator("#worst").press("Enter")  # to the check in its table
+    visitor.page.wait_for_function(
+        "() => document.activeElement.querySelector('[data-check=rotation]')?.checkVisibility()"
+    )
+    assert visitor.state()["tab"] == "response"
 
 
 def test_it_stands_still_for_those_who_want_that(visit) -> None:
@@ -104,9 +109,9 @@ def test_width_and_height_are_dragged(visit) -> None:
     drag(visitor, "B", 20)
     wide = values(visitor)["half_width"]
     assert wide == pytest.approx(3.5 + 20 / zoom, rel=0.01)
-    assert handle(visitor, "B").get_attribute("aria-valuenow") == f"{wide:g}"
+    assert handle(visitor, "B").get_attribute("aria-valuenow") == f"{2 * wide:g}"
     assert visitor.page.locator('[data-path="structure.cantilever.half_width"] input').input_value() == f"{wide:g}"
-    assert visitor.page.locator('[data-path="few.B"] input').input_value() == f"{wide:g}"
+    assert visitor.page.locator('[data-path="few.B"] input').input_value() == f"{2 * wide:g}"
     zoom = visitor.page.evaluate("rockflexDrawn.player.stage.zoom")
     drag(visitor, "H", 0, up=-30)
     assert values(visitor)["height"] == pytest.approx(24 - 30 / zoom, rel=0.01)
@@ -183,7 +188,7 @@ def test_handles_cover_neither_words_nor_each_other(visit, link, width) -> None:
           return [words, boxes.map((each) => [each.left - x, each.right - x, each.top - y, each.bottom - y])];
         }"""
     )
-    assert (len(words), len(dots)) == (3, 7)
+    assert (len(words), len(dots)) == (7, 7)  # state, dimensions, scale bar
     for x, y, wide in words:
         for left, right, top, bottom in dots:
             assert x + wide / 2 < left or x - wide / 2 > right or y < top or y - 10 > bottom

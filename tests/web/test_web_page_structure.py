@@ -345,7 +345,7 @@ def test_a_section_takes_the_place_of_stiffness_and_mass_and_gives_them_back(vis
     assert given["section"] == {"shape": "box", "width": 2, "depth": 2, "wall": 0.25, **CONCRETE}
     assert not {"bending_stiffness", "mass_per_length"} & set(given)
     visitor.fill("structure.cantilever.section.width", "3")
-    page.get_by_label("Material").select_option("steel")
+    page.locator('[data-path="section.material"] select').select_option("steel")
     wait_for_facts(visitor, rf.Section.box(3.0, 2.0, 0.25, **STEEL))
     visitor.fill("structure.cantilever.section.stiffness_factor", "0.5")
     made = rf.Section.box(3.0, 2.0, 0.25, **STEEL, stiffness_factor=0.5)

@@ -32,11 +32,12 @@ def field(visitor, path):
 def test_what_is_typed_in_inches_and_kips_is_kept_in_si_units(visit, link):
     visitor = visit(link({"structure": as_json_value(FUSES), "units": "kip-in"}))
     half = field(visitor, "structure.cantilever.half_width")
-    assert float(half.input_value()) == pytest.approx(FUSES["cantilever"]["half_width"] / constants.inch, rel=1e-11)
-    visitor.fill("few.B", "62.5")
+    assert float(half.input_value()) == pytest.approx(FUSES["cantilever"]["half_width"] / constants.inch, rel=5e-4)
+    assert len(half.input_value()) <= 5  # four digits of what a conversion makes long
+    visitor.fill("few.B", "125")
     visitor.wait_for_results()
     assert visitor.state()["structure"]["cantilever"]["half_width"] == 1.5875
-    assert field(visitor, "few.B").input_value() == half.input_value() == "62.5"
+    assert (field(visitor, "few.B").input_value(), half.input_value()) == ("125", "62.5")
     visitor.fill("structure.elements.0.initial_force", "500")
     assert visitor.state()["structure"]["elements"][0]["initial_force"] == float(f"{5e5 * constants.lbf:.15g}")
     visitor.fill("structure.cantilever.half_width", "-2")
@@ -143,7 +144,7 @@ def test_the_link_keeps_the_units_and_files_are_in_si_units(visit, client):
     other = visit(f"/{address}")
     assert other.page.locator("#units").input_value() == "kip-in"
     other.page.locator('#three dd:text-matches("rad$")').wait_for()
-    assert float(field(other, "few.B").input_value()) == pytest.approx(half / constants.inch, rel=6e-4)
+    assert float(field(other, "few.B").input_value()) == pytest.approx(2.0 * half / constants.inch, rel=6e-4)
     _, program = client.download("/api/file/python", other.state())
     assert f"half_width={half}" in program.decode().replace(" ", "").replace('"half_width":', "half_width=")
     _, report = client.download("/api/file/report", other.state())

@@ -278,7 +278,7 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
     bodies = next(each for each in found["kinds"]["beam"]["fields"] if each["name"] == "lumped_masses")
     assert (bodies["type"], [each["name"] for each in bodies["fields"]]) == ("table", ["heights", "masses", "rotary"])
     assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)
-    moved, one_sided, leaning, stories = found["whole"]
+    moved, one_sided, leaning, stories, *_ = found["whole"]
     assert [(each["name"], each["type"]) for each in one_sided["fields"]] == [
         ("restitution", "number"),
         ("side", "choice"),
@@ -439,6 +439,9 @@ def test_the_limits_of_its_lists(client) -> None:
     assert [(each["name"], each["clause"]) for each in listed] == [
         ("rocking", "it rocks (uplift with θ > 0.1 mrad)"),
         ("rotation", "the rotation exceeds …"),
+        ("drift", "the top drifts, apart from the rotation, by more than …"),
+        ("residual_drift", "a story keeps a drift of more than …"),
+        ("ductility", "a story needs a ductility of more than …"),
         ("nominal", "the nominal limit 0.7 atan(B/h*₁)"),
         ("overturning", "it overturns"),
     ]

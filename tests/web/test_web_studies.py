@@ -46,19 +46,51 @@ def test_curves_are_the_librarys_and_refitted_at_once(client, cloud, runs, limit
     if limit == "rotation":
         expected = fit.outcomes.exceedance(im, 0.02)
         assert (np.array(curve["low"]) <= np.array(curve["high"])).all()
+        low, high = fit.outcomes.curve(0.02).band(im, 0.9)
     else:
         shown = fit.outcomes.initiation if limit == "rocking" else fit.outcomes.overturning
         expected = shown.probability(im)
         low, high = shown.band(im, 0.9)
-        assert np.array(curve["low"]) == pytest.approx(low)
-        assert np.array(curve["high"]) == pytest.approx(high)
     assert np.array(curve["p"]) == pytest.approx(expected, rel=1e-9)
+    assert np.array(curve["low"]) == pytest.approx([low[: k + 1].max() for k in range(im.size)])  # rising
+    assert np.array(curve["high"]) == pytest.approx([high[k:].min() for k in range(im.size)])
     assert curve["n"] == len(runs)
+
+
+@pytest.mark.parametrize(
+    ("limit", "column"),
+    [("drift", "max_top_displacement"), ("ductility", "max_ductility"), ("residual_drift", "max_residual_drift_ratio")],
+)
+def test_drifts_and_ductilities_are_limits(client, limit, column) -> None:
+    stories = {"strengths": 2e5, "post_yield_ratio": 0.05}
+    structure = client.state()["structure"]
+    frame = {"frame": structure["frame"] | {"stiffness_ratio": "inf"}, "stories": stories}
+    bounds = {"drift": 0.006, "ductility": 8.0, "residual_drift": 1e-3}
+    cloud = CLOUD | {"models": ["MDOF-S"], "limit": limit, **bounds}
+    state = client.state(structure=frame, cloud=cloud)
+    token, answer = client.study("cloud", state)
+    runs = pd.read_csv(io.BytesIO(client.download(f"/api/study/cloud/{token}/table", state)[1]))
+    height = 15.0 if limit == "drift" else 1.0
+    beyond = (runs[column].abs() > bounds[limit] * height) | (runs["status"] == "overturned")
+    (curve,) = answer["curves"]
+    assert 0 < curve["n_exceeding"] == beyond.sum() < len(runs)
+    fit = rf.fit_logistic(runs["pgv"], beyond, runs.get("group"))
+    assert np.array(curve["p"]) == pytest.approx(fit.probability(np.array(curve["im"])), rel=1e-9)
+    space = client.program("cloud-python", state)
+    assert space["curves"]["MDOF-S"] == pytest.approx(fit.probability(space["im"]), rel=1e-6)
+
+
+def test_a_limit_that_the_structure_cannot_have_is_refused(client, cloud) -> None:
+    path = f"/api/study/cloud/{cloud}"
+    assert "no story" in client.refused(path, client.state(cloud=CLOUD | {"limit": "ductility"}))["cloud.limit"]
+    block = {"block": {"width": 0.6, "height": 2.0, "mass": 250.0}}
+    state = client.state(structure=block, models=["rigid"], cloud=CLOUD | {"limit": "drift", "models": ["rigid"]})
+    assert "drift" in client.refused(path, state)["cloud.limit"]
 
 
 def test_files_of_a_cloud(client, cloud, tmp_path, monkeypatch, runs) -> None:
     monkeypatch.chdir(tmp_path)
-    state = client.state(cloud=CLOUD)
+    state = client.state(cloud=CLOUD | {"limit": "rocking"})
     assert b"max_rotation" in client.download(f"/api/study/cloud/{cloud}/table", state)[1]
     assert b"<svg" in client.download(f"/api/study/cloud/{cloud}/figure", state)[1]
     name, study = client.download("/api/file/cloud-study", state)

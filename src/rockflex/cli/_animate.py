@@ -71,7 +71,7 @@ def animate(
             "--panels",
             "NAME,...",
             "Histories, separated by commas: rotation, top_displacement, total_top_displacement, base_moment, "
-            "base_shear, horizontal_reaction, slip, edge_uplift, ground_acceleration.",
+            "base_shear, horizontal_reaction, joint_rotation, slip, edge_uplift, ground_acceleration.",
         ),
     ] = None,
     width: Annotated[int, _picture("--width", "PX", "Width in pixels.")] = 960,

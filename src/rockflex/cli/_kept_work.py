@@ -1,4 +1,4 @@
-"""What ``rockflex reproduce`` has done, kept in its output folder so that the same line goes on after a stop."""
+"""The finished work of ``rockflex reproduce``, kept in its output folder so that the same line goes on after a stop."""
 
 import shutil
 from contextlib import ExitStack

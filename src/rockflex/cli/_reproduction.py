@@ -35,7 +35,7 @@ class Job:
 
     @property
     def title(self) -> str:
-        """What is computed, in words."""
+        """The computed part in words."""
         return self.target if self.piece is None else self.piece.name
 
 

@@ -5,9 +5,9 @@ cimport cython
 cdef class Journal:
     cdef int n
     cdef readonly int n_events
-    cdef Py_ssize_t n_nodes
+    cdef int n_nodes
     cdef double[::1] times
-    cdef int[:, ::1] exits
+    cdef int[:, ::1] exits  # of each event: place of its phase, its number, and number of the state after it
     cdef int[::1] often  # events of each kind
     cdef int[:, ::1] kinds, notes  # numbers of the names of events and of their second names, by phase and event
     cdef dict names  # those numbers by name

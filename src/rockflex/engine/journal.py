@@ -38,12 +38,12 @@ class Journal:
 
     def size(self):
         """Memory of events and history, bytes."""
-        return (8 * (3 + self.n) + 4) * self.rows.shape[0] + 16 * self.times.shape[0]
+        return (8 * (3 + self.n) + 4) * self.rows.shape[0] + 20 * self.times.shape[0]
 
     def clear(self):
         """Forget all, and give back the room."""
         self.n_events = self.n_nodes = 0
-        self.times, self.exits = np.zeros(64), np.zeros((64, 2), dtype=np.intc)
+        self.times, self.exits = np.zeros(64), np.zeros((64, 3), dtype=np.intc)
         self.rows, self.places = np.zeros((0, 3 + self.n)), np.zeros(0, dtype=np.intc)
 
     def wants(self, a, v):
@@ -72,10 +72,11 @@ class Journal:
         if self.n_events == self.times.shape[0]:
             with cython.gil:
                 self.times = np.concatenate((self.times, np.zeros(self.n_events)))
-                self.exits = np.concatenate((self.exits, np.zeros((self.n_events, 2), dtype=np.intc)))
+                self.exits = np.concatenate((self.exits, np.zeros((self.n_events, 3), dtype=np.intc)))
         self.tally(kind)
         self.times[self.n_events] = time
         self.exits[self.n_events, 0], self.exits[self.n_events, 1] = place, event
+        self.exits[self.n_events, 2] = self.n_nodes
         self.n_events += 1
         return 0
 
@@ -95,9 +96,14 @@ class Journal:
     @property
     def events(self):
         """Times of the events, places of the phases that they ended, and their names."""
-        places, numbers = np.array(self.exits[: self.n_events]).T
+        places, numbers, _ = self.turns.T
         names, kinds = list(self.names), np.asarray(self.kinds)[places, numbers]
         return np.array(self.times[: self.n_events]).tolist(), places.tolist(), [names[kind] for kind in kinds.tolist()]
+
+    @property
+    def turns(self):
+        """Of every event the place of the phase that it ended, its number there, and that of the state after it."""
+        return np.array(self.exits[: self.n_events])
 
     def count(self, kind):
         """How often events of a kind have happened."""

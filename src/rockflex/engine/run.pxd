@@ -49,7 +49,7 @@ cdef class Run:
     cdef double[::1] before  # the state, while the motion in another sample is expanded
     cdef Py_ssize_t passed  # samples, before this call of `advance`
     cdef double end  # time of the last event
-    cdef Journal journal
+    cdef readonly Journal journal
     cdef int n_searched  # samples expanded for peaks
 
     cdef void begin(self) noexcept nogil

@@ -4,6 +4,10 @@ from rockflex.engine.batch import Batch
 from rockflex.engine.system import Key, System
 from rockflex.foundation.arrays import Array, Integers
 
+class Journal:
+    @property
+    def turns(self) -> Integers: ...
+
 class Run:
     watch: Callable[[], object] | None
     limit: int
@@ -43,6 +47,8 @@ class Run:
     def peaks(self) -> dict[str, tuple[float, float]]: ...
     @property
     def events(self) -> list[tuple[float, Key, str]]: ...
+    @property
+    def journal(self) -> Journal: ...
     @property
     def work(self) -> int: ...
     @property

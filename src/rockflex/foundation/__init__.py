@@ -1,1 +1,1 @@
-"""What every layer may use: errors, checks, numbers and units in text, values with arrays, files, JSON, languages."""
+"""Shared parts of all layers: errors, checks, numbers and units in text, values with arrays, files, JSON, languages."""

@@ -3,7 +3,7 @@
 import math
 import operator
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from numbers import Real
 from typing import Any, SupportsIndex, TypeVar, cast
@@ -247,6 +247,16 @@ def checked_instance(name: str, value: Any, kind: type[T]) -> T:
         given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
         raise InputError(f"{name} must be of type {kind.__name__}, but {given} was given.", field=name)
     return value
+
+
+def checked_instances(name: str, values: Iterable[Any], kind: type[T]) -> tuple[T, ...]:
+    """Return `values`, each of which must be a `kind`, as a tuple."""
+    try:
+        given = tuple(values)
+    except TypeError:
+        message = f"{name} must be a sequence of {kind.__name__} objects, but {shown(values)} was given."
+        raise InputError(message, field=name) from None
+    return tuple(checked_instance(name, each, kind) for each in given)
 
 
 def is_one_of(value: object, words: Collection[str]) -> bool:

@@ -1,4 +1,4 @@
-"""What is known of an argument, said once, where the argument is: words, unit, rule, range and note.
+"""Descriptions of arguments, said once, where the argument is: words, unit, rule, range and note.
 
     height: Annotated[float, Described("the height above the base", "m", rule="positive", low=0.01, high=2000.0)]
 
@@ -21,7 +21,15 @@ NUMBER, WHOLE, PLAIN = "{}, a number{unit}", "{}, a whole number", "{}"
 FLAG = "true or false: {}"
 
 Rule = Literal[
-    "positive", "zero or positive", "zero, positive or infinite", "finite", "from 0 to below 1", "flag", "whole", "row"
+    "positive",
+    "zero or positive",
+    "zero, positive or infinite",
+    "finite",
+    "from 0 to below 1",
+    "from 0 to 1",
+    "flag",
+    "whole",
+    "row",
 ]
 Made = TypeVar("Made", bound=Callable[..., Any])
 Judge = Callable[[Any], Any]
@@ -29,7 +37,7 @@ Judge = Callable[[Any], Any]
 
 @dataclass(frozen=True)
 class Described:
-    """What is known of an argument, inside ``Annotated``; its name, type and default are those of the argument.
+    """The description of an argument, inside ``Annotated``; its name, type and default are those of the argument.
 
     Attributes
     ----------
@@ -109,6 +117,7 @@ class Described:
             ),
             "finite": partial(checks.checked_finite, name, unit=self.unit),
             "from 0 to below 1": partial(checks.checked_in_range, name, low=0.0, high=1.0),
+            "from 0 to 1": partial(checks.checked_in_range, name, low=0.0, high=1.0, closed=True),
             "flag": partial(checks.checked_instance, name, kind=bool),
             "whole": partial(checks.checked_whole_number, name, low=self.within[0], high=self.within[1]),
             "row": partial(checks.checked_row, name),
@@ -129,6 +138,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "zero or positive": (_BELOW_ZERO, math.inf),
     "finite": (-math.inf, math.inf),
     "from 0 to below 1": (_BELOW_ZERO, 1.0),
+    "from 0 to 1": (_BELOW_ZERO, math.nextafter(1.0, 2.0)),
 }
 """The open range of numbers that a rule takes as they are."""
 

@@ -1,4 +1,4 @@
-"""What other packages add to this one, by entry points of their distributions."""
+"""Parts that other packages add to this one, by entry points of their distributions."""
 
 import hashlib
 import inspect

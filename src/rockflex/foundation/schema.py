@@ -24,8 +24,9 @@ IMPACT = Described(
 )
 RESTITUTION = Described(
     "the rotation velocity after an impact over that before",
-    rule="finite",
-    note="θ'_after / θ'_before, from 0 to 1.",
+    rule="from 0 to 1",
+    note="θ'_after / θ'_before.",
+    remedy="It is the ratio of the rotation velocities after and before an impact; more than 1 would gain energy.",
     form="a number from 0 to 1",
     metavar="E",
     hint="From 0 to 1; with --impact restitution, or as measured with --impact angular-momentum.",
@@ -127,7 +128,7 @@ class InitialStateSchema:
 
 
 class ReportKeys:
-    """What the head of a report says."""
+    """The head of a report."""
 
     title: Annotated[
         str | None, Described("the heading of the report, in quotes", form=PLAIN, flag="report_title", metavar="TEXT")

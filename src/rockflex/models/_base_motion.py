@@ -13,18 +13,14 @@ JAMMED = 1e-12  # relative: determinant below which the base has no inertia agai
 def bordered_system_of(model: RockingModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
     """Return the equations of motion with the equations of the base, of which some degrees of freedom are free.
 
-    The couplings are c = h* for the rotation, 1 for the slip and 0 for the heave.
+    The couplings are c = h* for the rotations, 1 for the slip and 0 for the heave.
 
     Raises
     ------
     InputError
         If friction leaves a free base without inertia: it jams.
     """
-    p, layout = model.properties, model.layout
-    coupling = np.zeros((layout.freedoms, p.n_modes))
-    coupling[0] = p.effective_height
-    if layout.slip >= 0:
-        coupling[1] = 1.0
+    p, coupling = model.properties, model.couplings
     leverage = p.effective_mass * coupling
     inertia = equations.inertia - leverage @ coupling.T
     free = np.flatnonzero(freed)
@@ -35,7 +31,7 @@ def bordered_system_of(model: RockingModel, equations: BaseEquations, freed: Boo
             raise InputError(_no_sliding_solution(model))
         flexibility[np.ix_(free, free)] = np.linalg.inv(kept)
     return BorderedSystem(
-        coupling=coupling,
+        coupling=coupling.copy(),
         leverage=leverage,
         flexibility=flexibility,
         damping=equations.damping,

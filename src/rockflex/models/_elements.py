@@ -9,7 +9,6 @@ from rockflex.foundation.arrays import Array
 from rockflex.foundation.constants import GRAVITY
 from rockflex.models._phase import BaseEquations, Key
 from rockflex.models._state_layout import StateLayout
-from rockflex.structure._analysis import FloorModes
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._branches import HELD, BranchLimit, Element, YieldingStoryElement
 from rockflex.structure._rocking import RockingProperties
@@ -201,13 +200,13 @@ def elongation_rows_of_attached(properties: RockingProperties, layout: StateLayo
             floor = properties.stories[place - stories].floor
             row[:n] = shapes[floor] - shapes[floor - 1]
         else:
-            row[:] = _row_of(properties.elements[place], layout, shapes, floors)
+            row[:] = _row_of(properties.elements[place], layout, shapes, properties)
         found[place] = row
     return found
 
 
-def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, floors: FloorModes | None) -> Array:
-    row = np.zeros(layout.columns)
+def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, properties: RockingProperties) -> Array:
+    row, floors = np.zeros(layout.columns), properties.floors
     if element.between is not None:
         lower, upper = element.between
         if layout.modes:
@@ -219,7 +218,9 @@ def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, floors: Fl
         heights = np.append(0.0, floors.heights[order])
         shares = [np.interp(element.height, heights, shapes[np.append(0, 1 + order), k]) for k in range(layout.modes)]
         row[: layout.modes] = element.cosine * np.array(shares)
-    row[layout.rotation] = element.cosine * element.height
+    row[layout.rotation] = element.cosine * float(properties.turning_heights(element.height))
+    for place, joint in zip(layout.rotations[1:], properties.joints, strict=False):
+        row[place] = element.cosine * max(element.height - joint.height, 0.0)
     if layout.slip >= 0:
         row[layout.slip] = element.cosine
     return row

@@ -1,4 +1,4 @@
-"""What the vector fields of nonlinear models know of a model."""
+"""The numbers of a model that the vector fields of nonlinear models need."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from rockflex.structure._rocking import RockingProperties
 
 @dataclass(frozen=True, eq=False)
 class FieldNumbers:
-    """What a vector field knows of a model."""
+    """The numbers of a model that a vector field needs."""
 
     properties: RockingProperties
     bouc_wen: BoucWen | None

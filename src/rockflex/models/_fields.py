@@ -263,7 +263,7 @@ class RockingField(Field):
             self.enter_energies(y, part, a_v * sine - a * cosine, spin, lever * spin, out)
 
     def restoring(self, n, y, out, counted):
-        """What z adds to the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38.
+        """The share of z in the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38.
 
         With the branch times D' in place of |D'| the law is smooth up to the reversal.
         """

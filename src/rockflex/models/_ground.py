@@ -58,6 +58,14 @@ def model_on_ground(
                 f"once, but {friction.tolist()} was given.",
                 field="friction",
             )
+    if ground.springs.capacity is not None and (complete or bouc_wen is not None):
+        raise InputError(
+            f"{label} has no springs that yield, which simplified, elastic models have. Use MDOF-S or another of "
+            "these, or leave the capacity out.",
+            field="capacity",
+        )
+    rest = pose_at_rest(label, kept, ground.springs, complete=complete)
+    _check_elastic_at_rest(ground.springs, rest)
     return SpringModel(
         label,
         kept,
@@ -65,10 +73,24 @@ def model_on_ground(
         springs=ground.springs,
         inertia=kept.translational_inertia + float(ground.base_inertia or 0.0),
         friction=friction,
-        rest=pose_at_rest(label, kept, ground.springs, complete=complete),
+        rest=rest,
         complete=complete,
         bouc_wen=bouc_wen,
     )
+
+
+def _check_elastic_at_rest(springs: Springs, rest: Pose) -> None:
+    if springs.capacity is None:
+        return
+    force = np.maximum(springs.stiffness * (springs.positions * rest.rotation - rest.heave), 0.0)
+    worst = int(np.argmax(force / springs.capacity))
+    if not force[worst] < springs.capacity[worst]:
+        raise InputError(
+            f"capacity must exceed the forces at rest, but the spring at {springs.positions[worst]:g} m carries "
+            f"{force[worst]:.6g} N under the weight, and its capacity is {springs.capacity[worst]:.6g} N. Give a "
+            "larger one, or check its unit, N.",
+            field="capacity",
+        )
 
 
 def pose_at_rest(label: str, properties: RockingProperties, springs: Springs, *, complete: bool = False) -> Pose:

@@ -272,7 +272,7 @@ class GroundField(Field):
             self.enter_energies(y, a, a_v, out)
 
     def restoring(self, y, out, counted):
-        """What z adds to the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38."""
+        """The share of z in the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38."""
         z: cython.double = y[self.core]
         part: cython.double = self.yielding * z
         lean: cython.double = self.beta + (self.branch * self.gamma if z >= 0.0 else -self.branch * self.gamma)

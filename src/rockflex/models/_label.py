@@ -13,6 +13,7 @@ from rockflex.foundation.shown import number_with_noun, shown
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base_on_ground, model_on_ground
 from rockflex.models._impact import ImpactLaw, Rebound, Restitution, VVELComplete, VVELSimplified, housner
+from rockflex.models._jointed_model import model_on_rigid_ground
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._ground import Ground
 from rockflex.structure._rocking import RockingProperties
@@ -162,6 +163,8 @@ class Model:
         self._check_leaning(kept)
         self._check_attached(kept, bouc_wen, ground)
         self._check_one_sided(kept, impact, ground)
+        self._check_joints(kept, impact, bouc_wen, ground)
+        self._check_columns(kept, bouc_wen, ground)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact)
@@ -171,7 +174,9 @@ class Model:
                 label, kept, ground, given, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen
             )
         law = impact if impact is not None else self._law(kept)
-        return RockingModel(label, kept, self.lifts, law, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen)
+        return model_on_rigid_ground(
+            label, kept, self.lifts, law, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen
+        )
 
     def _check_missing_mass(self, kept: RockingProperties) -> None:
         if self.missing_mass and kept.base_mass is None:
@@ -228,6 +233,54 @@ class Model:
                 field="ground",
             )
 
+    def _check_joints(
+        self, kept: RockingProperties, impact: ImpactLaw | None, bouc_wen: BoucWen | None, ground: Ground | None
+    ) -> None:
+        if not kept.joints or not self.lifts:
+            return
+        if self.complete or bouc_wen is not None:
+            simple = replace(self, complete=False, closure=None, yields=False).label
+            raise InputError(
+                f"No complete model and none with Bouc-Wen hysteresis takes joints above the base. Use {simple}.",
+                field="joints",
+            )
+        if impact is not None and not isinstance(impact, VVELSimplified):
+            raise InputError(
+                "Joints above the base land without rebound, as VVELSimplified says, which no other impact law "
+                "describes. Leave impact out.",
+                field="impact",
+            )
+        if kept.opens != "both":
+            raise InputError("A structure that opens to one side has no joints above its base.", field="joints")
+        if ground is not None and not ground.rigid:
+            raise InputError(
+                "Joints above the base have no model on springs or on ground that the base slides on. Leave the ground "
+                "out.",
+                field="ground",
+            )
+        if any(each.sticks for each in kept.elements):
+            raise InputError(
+                "No model has friction dampers under a structure with joints above its base. Use a YieldingDissipator "
+                "with yield_force = F_0 and a stiffness far above that of the structure.",
+                field="elements",
+            )
+
+    def _check_columns(self, kept: RockingProperties, bouc_wen: BoucWen | None, ground: Ground | None) -> None:
+        if kept.columns is None or not self.lifts:
+            return
+        if self.complete or bouc_wen is not None or self.missing_mass or not kept.n_modes:
+            raise InputError(
+                f"{self.label} has no columns that rock under a building, which simplified models with modes have. Use "
+                "MDOF-S, or a rocking_frame for a slab alone.",
+                field="columns",
+            )
+        if ground is not None and not ground.rigid:
+            raise InputError(
+                "Columns that rock under a building have no model on springs or on ground that they slide on. Leave "
+                "the ground out.",
+                field="ground",
+            )
+
     def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"
         if not self.lifts:
@@ -261,6 +314,8 @@ class Model:
         """Return the default impact law of the model."""
         if kept.opens != "both":
             return Rebound(kept.restitution or 0.0)
+        if kept.columns is not None and kept.n_modes and self.lifts:
+            return Restitution(kept.restitution or 0.0)
         if self.n_modes == 0 and self.lifts:
             return housner(kept) if kept.restitution is None else Restitution(kept.restitution)
         if not self.complete or self.closure == "SI":

@@ -19,7 +19,6 @@ from rockflex.models._elements import (
     base_equations_of,
     branches_of_moving_elements,
     direction_of_yielding,
-    internal_count,
     internal_places,
     is_in_reach,
     rate_of_elongation_row,
@@ -37,24 +36,10 @@ from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, joined_quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
 TINY = 1e-300
 LEAST_ELONGATION = 1e-6  # m
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
-
-
-def linear_system_base(
-    model: RockingModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
-) -> "LinearSystemBase":
-    """Return the base of a linear model, on rigid ground or on springs; `shaken` where the ground moves vertically."""
-    return _base_on_ground_of(model)(model, quantities, extremes, shaken)
-
-
-def _base_on_ground_of(model: RockingModel) -> "type[LinearSystemBase]":
-    if model.springs is not None:
-        return LinearOnSprings
-    return LinearSliding if model.slip_marks else LinearOnRigidGround
 
 
 def linear_system_of(base: "LinearSystemBase") -> System:
@@ -71,7 +56,7 @@ def linear_system_of(base: "LinearSystemBase") -> System:
 
 @dataclass(frozen=True, eq=False)
 class LinearSystemBase:
-    """What the bases have in common: states, outputs, and the conversion from and to the states of the model.
+    """A system of any base: states, outputs, and the conversion from and to the states of the model.
 
     A row has the columns of the states, the ground acceleration and 1.
     """
@@ -102,13 +87,28 @@ class LinearSystemBase:
         parts = {"displacement": N, "velocity": N, "rotation": 1, "spin": 1}
         parts |= {"slip": 1, "slip_rate": 1} if layout.slip >= 0 else {}
         parts |= {"heave": 1, "heave_rate": 1} if layout.heave >= 0 else {}
-        return StateLayout(**parts, elastic=len(self.bars))
+        parts |= {"joints": 2 * layout.n_joints} if layout.n_joints else {}
+        return StateLayout(**parts, elastic=len(self.bars) + len(self.soil))
+
+    @cached_property
+    def soil(self) -> dict[int, int]:
+        """The place in the states of the elastic compression of each spring that can yield, by its own place."""
+        return {}
+
+    def compression(self, place: int) -> Array:
+        """The whole compression of a spring under the base: a row."""
+        raise NotImplementedError
+
+    @cached_property
+    def _soil_columns(self) -> list[int]:
+        return []
 
     @cached_property
     def columns(self) -> Integers:
         """Where the columns of a row are in the rows of the model."""
         layout, known = self.model.layout, internal_places(self.model.elements)
-        return np.array([*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1])
+        bars = (layout.memory + known[place] for place in self.bars)
+        return np.array([*range(layout.core), *bars, *self._soil_columns, -2, -1])
 
     def taken(self, rows: Array, key: Key) -> Array:
         """Rows of the model over the states, in which a plastic stretch m is δ + e_0 minus the elastic one."""
@@ -117,11 +117,15 @@ class LinearSystemBase:
             share = found[..., at].copy()
             found[..., at] = -share
             found += share[..., None] * self.stretch_in(place, key)
+        for place, at in self.soil.items():
+            share = found[..., at].copy()
+            found[..., at] = -share
+            found += share[..., None] * self.compression(place)
         return found
 
     def stretch_in(self, place: int, key: Key) -> Array:
         """The whole stretch δ + e_0 of a bar: a row."""
-        return self._stretches(place, key[0])[2]
+        return self._stretches(place, self.model.stance(key))[2]
 
     def blank(self) -> Array:
         """A row of zeros."""
@@ -148,20 +152,19 @@ class LinearSystemBase:
         still = self.still(key)
         if not self.shaken:
             return still
-        more, place = self.heavier.still(key), self.model.layout.rotation
+        more, places = self.heavier.still(key), self.model.layout.rotations
         found = {"A_v": np.zeros_like(still.A), "C_v": np.zeros_like(still.C)}
-        found["A_v"][:, place] = (more.A - still.A)[
-            :, place
-        ] / MORE  # gravity acts on the rotation alone, and by itself
-        found["C_v"][:, place] = (more.C - still.C)[:, place] / MORE
+        # Gravity acts on rotations alone, and by itself.
+        found["A_v"][:, places] = (more.A - still.A)[:, places] / MORE
+        found["C_v"][:, places] = (more.C - still.C)[:, places] / MORE
         found |= {"f_v": (more.c - still.c) / MORE, "d_v": (more.e - still.e) / MORE}
         events = tuple(self._shaken(one, other) for one, other in zip(still.events, more.events, strict=True))
         return replace(still, events=events, **found)
 
     def _shaken(self, still: Any, more: Any) -> Any:
         """An event, or what follows instead, with the terms of a vertical acceleration."""
-        row, place = np.zeros(self.layout.size), self.model.layout.rotation
-        row[place] = (more.row[place] - still.row[place]) / MORE
+        row, places = np.zeros(self.layout.size), self.model.layout.rotations
+        row[places] = (more.row[places] - still.row[places]) / MORE
         found = replace(still, row_v=row, direct_v=(more.constant - still.constant) / MORE)
         if getattr(still, "rest", None) is not None:
             found = replace(found, rest=self._shaken(still.rest, more.rest))
@@ -197,33 +200,33 @@ class LinearSystemBase:
 
     def stretch(self, place: int, key: Key) -> Array:
         """The elongation of an element: a row."""
-        return self._stretches(place, key[0])[0]
+        return self._stretches(place, self.model.stance(key))[0]
 
     def stretching(self, place: int, key: Key) -> Array:
         """The rate of the elongation of an element: a row."""
-        return self._stretches(place, key[0])[1]
+        return self._stretches(place, self.model.stance(key))[1]
 
-    def _stretches(self, place: int, side: int) -> Array:
+    def _stretches(self, place: int, stance: int | Key) -> Array:
         """The elongation of an element, its rate, and the whole stretch: read-only rows."""
-        known = self._known_stretches.get((place, side))
+        known = self._known_stretches.get((place, stance))
         if known is None:
-            row = self.model.stretch(place, side)
+            row = self.model.stretch(place, stance)
             known = np.array([row, rate_of_elongation_row(row, self.model.layout), row])[:, self.columns]
             known[2, -1] += self.model.elements[place].stretches or 0.0
             known.setflags(write=False)
-            self._known_stretches[place, side] = known
+            self._known_stretches[place, stance] = known
         return known
 
     @cached_property
-    def _known_stretches(self) -> dict[tuple[int, int], Array]:
+    def _known_stretches(self) -> dict[tuple[int, int | Key], Array]:
         return {}
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase."""
+        """The events that end a phase."""
         raise NotImplementedError
 
     def limit_rows(self, place: int, key: Key, branch: int) -> list[tuple[Array, int, float]]:
-        """What ends the branch of an element: condition, next branch, and the scale of the condition."""
+        """The ends of the branch of an element: condition, next branch, and the scale of the condition."""
         each, found = self.model.elements[place], list[tuple[Array, int, float]]()
         for stop in each.limits(branch):
             way = 1.0 if stop.upper else -1.0
@@ -252,7 +255,7 @@ class LinearSystemBase:
     def state_of(self, key: Key, state: Array) -> Array:
         """The states from the state of the model, whose internal variables are those at the start of the branches."""
         model, known = self.model, internal_places(self.model.elements)
-        found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars))))
+        found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars) + len(self.soil))))
         for place, at in self.bars.items():
             memory, offset = state[model.layout.memory + known[place]], self._offset(place, key)
             stretch = self.stretch_in(place, key) @ np.append(found, (0.0, 1.0))
@@ -286,9 +289,11 @@ class LinearSystemBase:
             marks = np.array([each.branch_code(model.element_key(key)[1 + place]) for key in keys], dtype=float)[places]
             last = found[:, model.layout.memory + index + each.n_internal - 1]
             last[:] = np.where(np.isnan(marks), last, marks)  # NaN where there is none
-        if model.layout.n_internal > internal_count(model.elements):
+        for (place, at), column in zip(self.soil.items(), self._soil_columns, strict=True):
+            found[:, column] = states @ self.compression(place)[:-2] - states[:, at]
+        if model.layout.n_internal > model.first_mark:
             more = np.array([model.marks(key) for key in keys])[places]
-            found[:, model.layout.memory + internal_count(model.elements) :] = more
+            found[:, model.layout.memory + model.first_mark :] = more
         return found
 
     def element_events(self, place: int, key: Key) -> list[Event]:
@@ -324,7 +329,7 @@ class LinearOnRigidGround(LinearSystemBase):
         return base
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase: uplift, or the release of a held base; impact, overturning, and elements."""
+        """The events that end a phase: uplift, or the release of a held base; impact, overturning, and elements."""
         model = self.model
         found = list[Event]()
         if model.is_free(key):
@@ -427,7 +432,7 @@ class LinearOnRigidGround(LinearSystemBase):
         return self.taken(self.model.angular_acceleration(key), key)
 
     def turn_by_weight(self, key: Key) -> Array:
-        """What each m/s² of vertical acceleration adds to θ'': a row."""
+        """The share of θ'' of each m/s² of vertical acceleration: a row."""
         heavier = self.heavier
         assert isinstance(heavier, LinearOnRigidGround)
         return (heavier.turn(key) - self.turn(key)) / MORE
@@ -456,7 +461,7 @@ class LinearSliding(LinearOnRigidGround):
         return (*base, key[-1])
 
     def events(self, key: Key) -> list[Event]:
-        """What ends a phase on ground on which the base cannot slide, and the slip."""
+        """The events that end a phase on ground on which the base cannot slide, and the slip."""
         return [*super().events(key), *self.slip(key)]
 
     def slip(self, key: Key) -> list[Event]:
@@ -478,72 +483,3 @@ class LinearSliding(LinearOnRigidGround):
         if abs(slip) == LOST:
             return [*found, self.event("change", self.taken(-pressure, key), (*before, way), weight)]
         return [*found, self.event("change", self.taken(pressure, key), (*before, LOST * way), weight)]
-
-
-@dataclass(frozen=True, eq=False)
-class LinearOnSprings(LinearSystemBase):
-    """A base on springs that cannot pull: it rotates, heaves and may slide."""
-
-    model: SpringModel  # pyright: ignore[reportIncompatibleVariableOverride]
-
-    @cached_property
-    def heave_scale(self) -> float:
-        """The settlement of the springs under the weight, m."""
-        return self.weight / float(self.model.springs.stiffness.sum())
-
-    @property
-    def weight(self) -> float:
-        """m_tot g, N."""
-        return self.model.properties.m_tot * self.model.gravity
-
-    def events(self, key: Key) -> list[Event]:
-        """What ends a phase: springs that unload, lift or land; the slip; elements; overturning."""
-        turned = self.unit(self.model.layout.rotation)
-        tips = [way * turned for way in (-1.0, 1.0)]
-        for row in tips:
-            row[-1] = QUARTER_TURN
-        found = [self.event("overturning", row, None, QUARTER_TURN) for row in tips]
-        of_elements = [each for place in range(len(self.model.elements)) for each in self.element_events(place, key)]
-        return [*self.of_springs(key), *self.of_slip(key), *of_elements, *found]
-
-    def of_springs(self, key: Key) -> list[Event]:
-        """A spring unloads, the base leaves it, or comes back to it."""
-        model, found, last = self.model, list[Event](), self.model.springs.n - 1
-        for j, branch in enumerate(key[1 : model.springs.n + 1]):
-            depth, push = model.depths[j][self.columns], model.pushes[j][self.columns]
-            edge, damped, place = j in (0, last), model.springs.damping[j] > 0.0, 1 + j
-            opens, closes = ("uplift", "impact") if edge else ("change", "change")
-            if branch == LOADED:
-                following = _with(key, place, RECEDING if damped else LIFTED)
-                found.append(self.event("change" if damped else opens, push, following, self.weight))
-            elif branch == LIFTED:
-                found.append(self.event(closes, depth, _with(key, place, LOADED), self.heave_scale))
-            else:
-                found.append(self.event("change", -push, _with(key, place, LOADED), self.weight))
-                found.append(self.event(opens, -depth, _with(key, place, LIFTED), self.heave_scale))
-        return found
-
-    def of_slip(self, key: Key) -> list[Event]:
-        """The base begins to slide, or ends it."""
-        model = self.model
-        if model.friction is None:
-            return []
-        place, rate = model.springs.n + 1, model.layout.slip + 1
-        if key[place] != STICK:
-            row = key[place] * self.unit(rate)
-            return [self.event("stick", row, _with(key, place, STICK), 1.0, self.without(rate))]
-        held, grip = horizontal_reaction(model, key), model.grip(key)
-        scale = float(model.friction.max()) * self.weight
-        # The ground pushes to the right on a base that would slide to the left.
-        return [
-            self.event("slip", self.taken(grip + way * held, key), _with(key, place, way), scale) for way in (-1, 1)
-        ]
-
-    @property
-    def least_elongation(self) -> float:
-        """The settlement of the springs under the weight, m."""
-        return self.heave_scale
-
-
-def _with(key: Key, place: int, branch: int) -> Key:
-    return (*key[:place], branch, *key[place + 1 :])

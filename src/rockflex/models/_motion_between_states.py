@@ -186,10 +186,16 @@ class IntervalsOfPhase:
             terms = each
         return terms.sum(axis=0)
 
+    @property
+    def mostly_alike(self) -> bool:
+        """Whether most intervals are as long as many others, so that a matrix for each length is less than a series."""
+        counts = np.unique(self.steps, return_counts=True)[1]
+        return 2 * int(counts[counts > self.z.shape[1]].sum()) > self.steps.size
+
     def along(self, fractions: Array) -> Iterator[Array]:
         """Yield z at one fraction of all intervals after the other, shape (n, Z); they rise."""
         parts, done = self.motion.parts(float(self.steps.max())), 0
-        if self.shaking is None and (parts > fractions.size or self.rows.size > MOST):
+        if self.shaking is None and (parts > fractions.size or self.rows.size > MOST or self.mostly_alike):
             for fraction in fractions.tolist():
                 yield self.after(np.arange(self.rows.size), fraction * self.steps)
             return

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.models._elements import CLOSED
+from rockflex.models._elements import LEFT, RIGHT
 from rockflex.models._quantities import (
     CLIMB,
     HORIZONTAL,
@@ -21,6 +22,7 @@ from rockflex.models._quantities import (
 )
 from rockflex.models._rocking_model import RockingModel
 from rockflex.structure._analysis import FloorModes
+from rockflex.structure._rocking import RockingProperties
 
 
 def quantities(model: RockingModel, names: Iterable[str]) -> Quantities:
@@ -39,7 +41,7 @@ def _top_displacement(model: RockingModel) -> Share:
 
 def _base_moment(model: RockingModel) -> Share:
     p = model.properties
-    return _base_force(model, p.effective_mass * p.effective_height, 1)
+    return _base_force(model, p.effective_mass * p.moment_heights, 1)
 
 
 def _base_shear(model: RockingModel) -> Share:
@@ -58,13 +60,30 @@ def _total_top_displacement(model: RockingModel) -> Share:
     p = model.properties
     if not p.top_height:
         return LINEAR, {}
-    return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height, "slip": 1.0}
+    return SWAY, {
+        "displacement": p.top_ordinate,
+        "rotation": p.top_height,
+        "slip": 1.0,
+        "joint": levers_of_joints(p, p.top_height),
+    }
+
+
+def levers_of_joints(properties: RockingProperties, heights: ArrayLike) -> Array:
+    """Return how far each joint above the base moves points at some heights for a unit of its rotation, (.., J)."""
+    joints = np.array([each.height for each in properties.joints])
+    return np.maximum(np.asarray(heights, dtype=float)[..., None] - joints, 0.0)
 
 
 def _horizontal_reaction(model: RockingModel) -> Share:
     """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D'', and what ties from a height pull."""
     p = model.properties
-    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass, "ties": 1.0}
+    return HORIZONTAL, {
+        "acceleration": p.effective_mass,
+        "turn": p.l0r,
+        "ground": p.horizontal_mass,
+        "ties": 1.0,
+        "joint_turn": [each.moment for each in p.joints],
+    }
 
 
 def _slip(_model: RockingModel) -> Share:
@@ -89,12 +108,22 @@ def floor_quantities(model: RockingModel, floors: FloorModes, names: Iterable[st
     relative to the ground. `floor_acceleration` (m/s²): a + h θ'' + Σ Γ φ D'', for small rotations.
     """
     p = model.properties
-    count, n = floors.heights.size, p.n_modes
+    count, n, joints = floors.heights.size, p.n_modes, levers_of_joints(p, floors.heights)
     shapes = {
         "story_drift": {"displacement": np.diff(floors.displacement, axis=0, prepend=0.0)},
         "story_shear": {"restoring": np.cumsum((floors.force / p.omega**2)[::-1], axis=0)[::-1]},
-        "total_floor_displacement": {"displacement": floors.displacement, "rotation": floors.heights, "slip": 1.0},
-        "floor_acceleration": {"acceleration": floors.displacement, "turn": floors.heights, "ground": 1.0},
+        "total_floor_displacement": {
+            "displacement": floors.displacement,
+            "rotation": p.turning_heights(floors.heights),
+            "slip": 1.0,
+            "joint": joints,
+        },
+        "floor_acceleration": {
+            "acceleration": floors.displacement,
+            "turn": p.turning_heights(floors.heights),
+            "ground": 1.0,
+            "joint_turn": joints,
+        },
     }
     kinds = {"total_floor_displacement": SWAY}
     return joined_quantities([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
@@ -107,6 +136,12 @@ def modal_displacement(model: RockingModel, mode: int) -> Quantities:
     return Quantities.of(1, share.size, displacement=share)
 
 
+def joint_rotations(model: RockingModel) -> Quantities:
+    """Return the rotation of each joint above the base in rad."""
+    count = len(model.properties.joints)
+    return Quantities.of(count, model.properties.n_modes, joint=np.eye(count))
+
+
 def rotation_by_side(model: RockingModel) -> Quantities:
     """Return the rotation to the right in rad (zero while rotated to the left), and likewise to the left."""
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])
@@ -115,34 +150,51 @@ def rotation_by_side(model: RockingModel) -> Quantities:
 def tracked_elements(model: RockingModel) -> tuple[int, ...]:
     """Return the places of elements whose elongation does not follow from the rotation: attached ones and stories.
 
-    On springs that is every element.
+    On springs and of structures with joints that is every element.
     """
-    return model.attached_places if model.springs is None else tuple(range(len(model.elements)))
+    return model.moving_places
 
 
 def element_moves(model: RockingModel) -> Quantities:
     """Return δ of each of `tracked_elements` and its negative in m, less what it has in the state zero."""
-    rows = _elongation_rows(model)
-    shares = _shares_of(model, np.stack((rows, -rows), axis=1).reshape(-1, rows.shape[1]))
-    return Quantities.of(2 * len(rows), model.properties.n_modes, LIFT if model.complete else LINEAR, **shares)
+    found = {
+        name: np.stack((rows, -rows), axis=1).reshape(2 * len(rows), *rows.shape[1:])
+        for name, rows in _elongation_shares(model).items()
+    }
+    kind = LIFT if model.complete else LINEAR
+    return Quantities.of(2 * len(tracked_elements(model)), model.properties.n_modes, kind, **found)
 
 
 def element_speeds(model: RockingModel) -> Quantities:
     """Return δ' of each of `tracked_elements` in m/s."""
-    names = {"displacement": "velocity", "slip": "slipping", "heave": "heaving", "rotation": "swing"}
-    shares = {names[name]: share for name, share in _shares_of(model, _elongation_rows(model)).items()}
+    shares = {_RATES[name]: share for name, share in _elongation_shares(model).items()}
     kind = CLIMB if model.complete else LINEAR
     return Quantities.of(len(tracked_elements(model)), model.properties.n_modes, kind, **shares)
 
 
-def _elongation_rows(model: RockingModel) -> Array:
-    places = tracked_elements(model)
-    return np.array([model.stretch(place, CLOSED) for place in places]).reshape(len(places), -1)
+_RATES = {
+    "displacement": "velocity",
+    "slip": "slipping",
+    "heave": "heaving",
+    "rotation": "swing",
+    "right": "right_swing",
+    "joint": "joint_spin",
+    "right_joint": "right_joint_spin",
+}
 
 
-def _shares_of(model: RockingModel, rows: Array) -> dict[str, Array]:
-    layout = model.layout
+def _elongation_shares(model: RockingModel) -> dict[str, Array]:
+    """Return the shares of the elongations of `tracked_elements`, which depend on the sides of joints."""
+    layout, places = model.layout, tracked_elements(model)
+    rows, right = (
+        np.array([model.stretch(place, model.stance_on(side)) for place in places]).reshape(len(places), -1)
+        for side in (LEFT, RIGHT)
+    )
     found = {"displacement": rows[:, : layout.modes], "rotation": rows[:, layout.rotation]}
+    found["right"] = right[:, layout.rotation] - rows[:, layout.rotation]
+    if layout.n_joints:
+        joints = layout.rotations[1:]
+        found |= {"joint": rows[:, joints], "right_joint": right[:, joints] - rows[:, joints]}
     shifts = {"slip": layout.slip, "heave": layout.heave}
     return found | {name: rows[:, place] for name, place in shifts.items() if place >= 0}
 

@@ -114,7 +114,7 @@ class BorderedSystem:
 
 @dataclass(frozen=True, eq=False)
 class GroundPhase:
-    """What moves and what acts in a phase of a base that slides or stands on springs.
+    """The motions and forces of a phase of a base that slides or stands on springs.
 
     Attributes
     ----------

@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from threading import Lock
@@ -20,7 +20,8 @@ from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.models._landing import GUARDED, GainsEnergyError
-from rockflex.models._linear_system import LinearSystemBase, linear_system_base, linear_system_of
+from rockflex.models._linear_bases import linear_system_base
+from rockflex.models._linear_system import LinearSystemBase, linear_system_of
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._nonlinear_system import nonlinear_system_key, states_with_branch_codes
 from rockflex.models._phase import Key
@@ -29,12 +30,13 @@ from rockflex.models._rigid_ground_system import may_stack, system_on_rigid_grou
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._run_failures import explaining_engine_failures, failure_of_limit, failure_of_run, failure_of_step
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._work import SEARCH, CostModel, Task, WorkGate, cost_model_of
+from rockflex.models._work import SEARCH, CostModel, Task, cost_model_of
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 256  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
+SIZES = 64  # of runs whose work has been checked, at most
 COUNTED = ("uplift", "impact", GUARDED)
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
@@ -90,7 +92,7 @@ class PreparedModel:
                 "simulated. Keep fewer: the highest ones move nothing.",
                 field="model",
             )
-        self.place, self.gate = 0, WorkGate()
+        self.place, self._accepted = 0, set[tuple[object, ...]]()
         self.n_peaks = 1 + len(quantities)
 
     @cached_property
@@ -143,14 +145,28 @@ class PreparedModel:
         if self.model.integrated:
             return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
-        free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
+        free = min([p.pivot(side).i_theta for side in self.model.sides[1:]], default=np.inf) - levers.sum()
         # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
-        fades = float((drag * (1.0 + levers / free)).sum())
+        fades = float(drag @ (1.0 + levers / free))
         return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
         return Task(self.model, self.cost_model, run.acceleration, dt, free_vibration, history, run.scale)
+
+    def check_work(
+        self, run: Excitation, dt: float, free_vibration: float | None, *, history: bool, limit: float | None
+    ) -> None:
+        """Raise `WorkLimitError` as `Task.check` does; of runs that are equally much work only the first is asked."""
+        # With a hysteresis that flows, the work depends on every sample.
+        size = None if self.cost_model.flow else (run.acceleration.size, dt, free_vibration, history, limit)
+        if size in self._accepted:
+            return
+        self.task(run, dt, free_vibration, history=history).check(limit)
+        if size is not None:
+            if len(self._accepted) >= SIZES:
+                self._accepted.clear()
+            self._accepted.add(size)
 
     def join_pool(self, pool: SolverPool, place: int) -> None:
         """Share a pool with other models."""
@@ -215,11 +231,14 @@ class PreparedModel:
         """The states of the model, from those of the engine."""
         if not places.size:  # all runs were refused
             return np.zeros((0, self.model.layout.size))
+        if not self.model.integrated and self.base is None:
+            return states
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
         if self.model.integrated:
             return states_with_branch_codes(self.model, keys, places, states)
-        return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
+        assert self.base is not None
+        return self.base.states_of_model(keys, places, states, history=history)
 
     def failure(
         self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
@@ -275,13 +294,15 @@ def run_all(
     starts: Sequence[Start] | None = None,
     history: bool = False,
     work_limit: float | None = None,
+    seen: Callable[[Run], None] | None = None,
 ) -> Solutions:
     """Run records, each on one of the models of a pool, followed by `free_vibration` s (None: until settled).
 
     There is a model and a start for every run; starts are as in `PreparedModel.start`, and all at rest by default. The
     ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
     of each run in s, see `CostModel`; None means no limit. Some ten times a second the runs can be interrupted by
-    Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
+    Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state, and be `seen`: the
+    solver is shown after a run that could be solved.
 
     The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
     work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
@@ -296,11 +317,10 @@ def run_all(
         If the runs were stopped from outside.
     """
     first, settles, failures = engines[0], free_vibration is None, dict[int, InputError | SolverError]()
-    tasks = [engine.task(run, dt, free_vibration, history=history) for engine, run in zip(engines, runs, strict=True)]
-    begins = [first.at_rest] * len(runs)
-    for place, (engine, task) in enumerate(zip(engines, tasks, strict=True)):
+    begins = [first.at_rest] * len(runs)  # the same for all models of a pool
+    for place, (engine, run) in enumerate(zip(engines, runs, strict=True)):
         try:
-            engine.gate.check(task, work_limit)
+            engine.check_work(run, dt, free_vibration, history=history, limit=work_limit)
             if starts is not None:
                 begins[place] = engine.start(starts[place])
         except InputError as error:
@@ -311,16 +331,15 @@ def run_all(
         pool.system,
         [runs[place].acceleration for place in allowed],
         [runs[place].scale for place in allowed],
-        free=[
-            free_vibration_samples(
-                engines[place].longest_settling_time if free_vibration is None else free_vibration, dt
-            )
-            for place in allowed
-        ],
+        free=(
+            [free_vibration_samples(engines[place].longest_settling_time, dt) for place in allowed]
+            if free_vibration is None
+            else free_vibration_samples(free_vibration, dt)
+        ),
         settles=settles,
         names=COUNTED,
         verticals=[runs[place].vertical for place in allowed],
-        start=np.array([begins[place][1] for place in allowed]) if allowed else None,
+        start=np.array([begins[place][1] for place in allowed]) if starts and allowed else begins[0][1],
         keys=[begins[place][0] for place in allowed],
         which=[engines[place].place for place in allowed],
     )
@@ -332,7 +351,8 @@ def run_all(
             solver.follow(batch, history)
         except (InputError, SolverError) as error:
             place = allowed[batch.place]
-            failures[place] = engines[place].failure(error, solver, tasks[place], work_limit)
+            task = engines[place].task(runs[place], dt, free_vibration, history=history)
+            failures[place] = engines[place].failure(error, solver, task, work_limit)
             batch.place += 1
     states = first.model_states(cast("list[Key]", solver.keys), batch.places, batch.states)
     found = _ends_of(batch, states, dt, allowed, len(runs), settles=settles)
@@ -340,6 +360,8 @@ def run_all(
         status, samples = Status(found.status[place]), int(found.samples[place])
         failures.setdefault(place, failure_of_run(engines[place].model, status, samples, dt, found.states[place]))
     kept = first.history_of(solver) if history and not failures else None
+    if seen is not None and not failures:
+        seen(solver)
     pool.release(solver)
     return Solutions(found, dt, first.n_peaks, first.n_peaks, failures, kept)
 

@@ -1,6 +1,6 @@
 """Response quantities as weighted sums, independent of the phase, and their rows in each phase."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -34,6 +34,7 @@ OF_MODES = ("displacement", "restoring", "acceleration", "velocity")
 OF_BASE = ("ties", "rotation", "right", "turn", "ground")
 OF_SWING = ("swing", "right_swing")
 OF_SHIFT = ("slip", "slipping", "heave", "heaving")
+OF_JOINTS = ("joint", "right_joint", "joint_turn", "joint_spin", "right_joint_spin")
 TIES, ROTATION, RIGHT_ROTATION, TURN, GROUND = -5, -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
@@ -53,6 +54,10 @@ class Quantities:
     shifts : ndarray, shape (F, 4)
         Weights of the `slip` and the `heave` of the base and of their rates (`slipping`, `heaving`), in models that
         have them.
+    joints : ndarray, shape (F, 5, J)
+        Weights of the rotation of each joint above the base (`joint`), of that while it is open to the right
+        (`right_joint`), of its acceleration (`joint_turn`), and of its rate, likewise (`joint_spin`,
+        `right_joint_spin`).
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models._quantities`.
     """
@@ -60,6 +65,7 @@ class Quantities:
     shares: Array
     swings: Array
     shifts: Array
+    joints: Array
     kinds: NDArray[np.int64]
 
     @classmethod
@@ -67,14 +73,17 @@ class Quantities:
         """Return `count` quantities of a model with the given number of modes; shares not given are zero."""
         values = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE)))
         swings, shifts = np.zeros((count, len(OF_SWING))), np.zeros((count, len(OF_SHIFT)))
+        joints = _joint_shares(count, shares)
         for name, share in shares.items():
-            if name in OF_SWING:
+            if name in OF_JOINTS:
+                joints[:, OF_JOINTS.index(name)] = share
+            elif name in OF_SWING:
                 swings[:, OF_SWING.index(name)] = share
             elif name in OF_SHIFT:
                 shifts[:, OF_SHIFT.index(name)] = share
             else:
                 values[:, _columns(modes)[name]] = share
-        return cls(values, swings, shifts, np.full(count, kind, dtype=np.int64))
+        return cls(values, swings, shifts, joints, np.full(count, kind, dtype=np.int64))
 
     @classmethod
     def none(cls, modes: int) -> "Quantities":
@@ -97,6 +106,12 @@ class Quantities:
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
 
 
+def _joint_shares(count: int, *shares: Mapping[str, ArrayLike]) -> Array:
+    """Return blank weights for the joints of some shares, as many as the most that one names."""
+    most = max([np.shape(given[name])[-1] for given in shares for name in OF_JOINTS if name in given], default=0)
+    return np.zeros((count, len(OF_JOINTS), most))
+
+
 @lru_cache(maxsize=256)
 def _columns(modes: int) -> dict[str, slice | int]:
     """Return the places of the shares in a row of `Quantities.shares`, by name."""
@@ -108,22 +123,40 @@ def collected_quantities(modes: int, shares: Sequence[Share]) -> Quantities:
     """Return one quantity for each pair of kind and shares."""
     count, columns = len(shares), _columns(modes)
     values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
-    for row, shift, (_, given) in zip(values, shifts, shares, strict=True):
+    joints = _joint_shares(count, *(given for _, given in shares))
+    for row, shift, joint, (_, given) in zip(values, shifts, joints, shares, strict=True):
         for name, share in given.items():
-            if name in OF_SHIFT:
+            if name in OF_JOINTS:
+                joint[OF_JOINTS.index(name), : np.shape(share)[-1]] = share
+            elif name in OF_SHIFT:
                 shift[OF_SHIFT.index(name)] = share
             else:
                 row[columns[name]] = share
     kinds = np.array([kind for kind, _ in shares], dtype=np.int64)
-    return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, kinds)
+    return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, joints, kinds)
 
 
 def joined_quantities(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
     if len(parts) == 1:
         return parts[0]
-    names = ("shares", "swings", "shifts", "kinds")
-    return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+    shares, swings, shifts, kinds = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("shares", "swings", "shifts", "kinds")
+    )
+    return Quantities(shares, swings, shifts, _beside_one_another([part.joints for part in parts]), kinds)
+
+
+def _beside_one_another(parts: Sequence[Array]) -> Array:
+    """Return the weights of joints of all parts, of which some know none."""
+    most = max((part.shape[-1] for part in parts), default=0)
+    if not most:  # as nearly always, where padding would take longer than all else
+        return np.zeros((sum(map(len, parts)), len(OF_JOINTS), 0))
+    return np.concatenate(
+        [
+            np.zeros((0, len(OF_JOINTS), most)),
+            *(np.pad(part, ((0, 0), (0, 0), (0, most - part.shape[-1]))) for part in parts),
+        ]
+    )
 
 
 def rows_of_quantities(model: RockingModel, quantities: Quantities, key: Key) -> Array:
@@ -147,7 +180,21 @@ def rows_of_quantities(model: RockingModel, quantities: Quantities, key: Key) ->
     for place, weights in zip(places, quantities.shifts.T, strict=True):
         if place >= 0:
             rows[:, place] += weights
+    if quantities.joints.shape[-1]:
+        _add_joints(model, quantities, key, rows)
     return rows
+
+
+def _add_joints(model: RockingModel, quantities: Quantities, key: Key, rows: Array) -> None:
+    """Add what the joints above the base contribute to the rows of quantities; nothing where the base is fixed."""
+    places, stance = model.layout.rotations[1:], model.stance(key)
+    if not places or isinstance(stance, int):
+        return
+    turn, right_turn, turning, spin, right_spin = quantities.joints.swapaxes(0, 1)
+    right = np.array(stance[1:]) == RIGHT
+    rows[:, places] += turn + right_turn * right
+    rows[:, [place + 1 for place in places]] += spin + right_spin * right
+    rows += turning @ model.accelerations(key)[-len(places) :]
 
 
 def _moving(model: RockingModel, key: Key, *, large: bool) -> Array:

@@ -12,9 +12,10 @@ from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._elements import CLOSED
 from rockflex.models._field_numbers import field_numbers
+from rockflex.models._jointed_model import JointedModel
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._spring_model import LOADED
+from rockflex.models._spring_model import LOADED, YIELDING, SpringModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE
 from rockflex.models._values_at_states import acting_side, observed, rates_at_states
 
@@ -39,6 +40,8 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
     horizontal = p.horizontal_mass * states[:, GROUND] + p.l0r * turn + push
+    if isinstance(model, JointedModel):
+        horizontal += rates[:, n + 1 :] @ model.levers[1:]
     if layout.slip >= 0:
         horizontal += p.horizontal_mass * rates[:, n + 1]
     pulls = element_forces(model, states)
@@ -52,6 +55,8 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     for each in (1, -1):
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
+    if isinstance(model, JointedModel):
+        vertical += (model.lift_rates(states, rates[:, n:]) * model.weights)[:, 1:].sum(axis=1)
     return Reactions(horizontal, vertical)
 
 
@@ -62,8 +67,11 @@ def spring_forces(model: RockingModel, states: Array) -> Array:
     layout, side = model.layout, states[:, SIDE]
     moving = states[:, HEADER : HEADER + layout.moving]
     vector = model.stretched(np.column_stack((moving, states[:, GROUND], np.ones(side.size))))
-    loaded = model.branches_at(side, layout.of(states, layout.rotation), states)[:, 1 : model.springs.n + 1] == LOADED
-    return np.where(loaded, vector @ model.spring_forces(model.start(CLOSED)).T, 0.0)
+    branches = model.branches_at(side, layout.of(states, layout.rotation), states)[:, 1 : model.springs.n + 1]
+    found = np.where(branches == LOADED, vector @ model.spring_forces(model.start(CLOSED)).T, 0.0)
+    if isinstance(model, SpringModel) and model.soft:
+        found = np.where(branches == YIELDING, vector @ model.holds.T, found)
+    return found
 
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_in_range
 from rockflex.foundation.descriptions import described
 from rockflex.foundation.schema import RESTITUTION, SHORTEST_EXCURSION, ShortestExcursion
 from rockflex.structure._rocking import RockingProperties
@@ -13,7 +12,7 @@ from rockflex.structure._rocking import RockingProperties
 @described
 @dataclass(frozen=True)
 class Rebound:
-    """What opens to one side turns back at the wall behind it with a fraction e of its velocity, θ' → -e θ'.
+    """A base that opens to one side turns back at the wall behind it with a fraction e of its velocity, θ' → -e θ'.
 
     It belongs to structures that open to one side (`OneSided`), which take no other law.
     """
@@ -25,7 +24,7 @@ class Rebound:
     loses = "the rest of the rotation's energy"
 
     def __post_init__(self) -> None:
-        checked_in_range("e", self.e, 0.0, 1.0, closed=True)
+        """Check nothing beyond what is known of each field."""
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float, *_: Array

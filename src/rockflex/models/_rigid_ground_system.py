@@ -30,8 +30,8 @@ CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
 def may_stack(model: RockingModel) -> bool:
     """Return whether a model can be in a stack: at its impacts, if any, the state is multiplied by a matrix."""
     p = model.properties
-    numbers = np.abs((*p.omega, p.i_theta, p.l0r, p.m_tot, p.half_width))
-    usual = bool((numbers > SMALL).all() and (numbers < LARGE).all())  # what overflows is told of one model
+    numbers = [*p.omega.tolist(), p.i_theta, p.l0r, p.m_tot, p.half_width]
+    usual = all(SMALL < abs(each) < LARGE for each in numbers)  # what overflows is told of one model
     rules = [(side, rule_of_law(model.law, side)) for side in (RIGHT, LEFT) if model.lifts]
     return usual and all(rule is not None and rule.fixed_share(p, side) == 0.0 for side, rule in rules)
 
@@ -105,7 +105,7 @@ class RigidGround:
         )
 
     def shaken(self, side: int) -> dict[str, Array]:
-        """What the vertical acceleration multiplies: it acts like that much more gravity."""
+        """The coefficients of the vertical acceleration, which acts like that much more gravity."""
         (S, N), turn = self.omega.shape, self.turn_by_weight(side)
         accelerations = -self.height[..., None] * turn[:, None]
         rates = np.zeros((S, 2 * N + 2, 2 * N + 4))
@@ -141,7 +141,7 @@ class RigidGround:
         return found / self.free_inertia(side)[:, None]
 
     def turn_by_weight(self, side: int) -> Array:
-        """What the weight under a gravity of 1 m/s² adds to θ'': a row, shape (S, C)."""
+        """The share of θ'' of the weight under a gravity of 1 m/s²: a row, shape (S, C)."""
         found = np.zeros_like(self.moment())
         if side != CLOSED:
             found[:, -4], found[:, -1] = self.l0r, -side * self.m_tot * self.pivots[side][1]
@@ -168,7 +168,7 @@ class RigidGround:
         return self.lost_support(side, turn, self.m_tot * (self.gravity - GRAVITY))
 
     def lost_support(self, side: int, turn: Array, heavier: Array) -> Array:
-        """What θ'' takes from ΣF_z, beyond what is heavier, shape (S, 1, C)."""
+        """The part of ΣF_z that θ'' takes away, beyond the heavier weight, shape (S, 1, C)."""
         found = np.zeros((len(turn), 1, turn.shape[1]))
         if side != CLOSED:
             found[:, 0] = -side * (self.m_tot * self.pivots[side][1])[:, None] * turn

@@ -115,11 +115,11 @@ class RockingModel(Value):
     @property
     def has_bare_base(self) -> bool:
         """Whether nothing but the rotation moves the base: rigid ground, no elements, no slip."""
-        return self.springs is None and not self.elements and self.layout.slip < 0
+        return self.springs is None and not self.elements and self.layout.slip < 0 and not self.layout.n_joints
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
-        """What describes the ground, by name; nothing if it is rigid and the base cannot slide."""
+        """The parameters of the ground, by name; none if it is rigid and the base cannot slide."""
         return {}
 
     @cached_property
@@ -127,7 +127,7 @@ class RockingModel(Value):
         """Layout of the state vector."""
         return self._layout(n_branch_codes(len(self.attached_places), self.code_base))
 
-    def _layout(self, n_marks: int, *, slides: bool = False, heaves: bool = False) -> StateLayout:
+    def _layout(self, n_marks: int, *, slides: bool = False, heaves: bool = False, n_joints: int = 0) -> StateLayout:
         """Return the layout with a number of internal variables that tell branches."""
         springs = self.springs if heaves else None
         return state_layout_of(
@@ -137,6 +137,7 @@ class RockingModel(Value):
             n_internal=internal_count(self.elements) + n_marks,
             slides=slides,
             heaves=heaves,
+            n_joints=n_joints,
             springs=0 if springs is None else springs.n,
             elements=len(self.elements) if heaves else 0,
         )
@@ -150,6 +151,33 @@ class RockingModel(Value):
     def attached_places(self) -> tuple[int, ...]:
         """The places of attached elements and stories among the elements."""
         return tuple(place for place, each in enumerate(self.elements) if each.position is None)
+
+    @property
+    def first_mark(self) -> int:
+        """The place of the first number that tells branches among the internal variables."""
+        return internal_count(self.elements)
+
+    @property
+    def moving_places(self) -> tuple[int, ...]:
+        """The places of elements whose elongation does not follow from the rotation of the base alone."""
+        return self.attached_places
+
+    def stance(self, key: Key) -> int | Key:
+        """Return what elongations depend on in a phase besides the state: the side of the base, or of every joint."""
+        return key[0]
+
+    def stance_on(self, side: int) -> int | Key:
+        """Return the stance in which all joints are open to a side."""
+        return side
+
+    @cached_property
+    def couplings(self) -> Array:
+        """The couplings c of the modes with the degrees of freedom of the base, shape (b, N)."""
+        found = np.zeros((self.layout.freedoms, self.properties.n_modes))
+        found[0] = self.properties.effective_height
+        if self.layout.slip >= 0:
+            found[1] = 1.0
+        return found
 
     @cached_property
     def code_base(self) -> int:
@@ -306,29 +334,30 @@ class RockingModel(Value):
             found[:, place] = moving @ row[:-2] + row[-1]
         return found
 
-    def stretch(self, place: int, side: int) -> Array:
-        """Return the elongation of an element in m, for small rotations: a row, shape (C,)."""
+    def stretch(self, place: int, stance: int | Key) -> Array:
+        """Return the elongation of an element in m in a `stance`, for small rotations: a row, shape (C,)."""
         if place in self.attached:
             return self.attached[place].copy()
+        assert isinstance(stance, int)
         row = np.zeros(self.layout.columns)
-        if side != CLOSED:
-            row[self.layout.rotation] = side * arm_of_element(self.properties, self.elements[place], side)
+        if stance != CLOSED:
+            row[self.layout.rotation] = stance * arm_of_element(self.properties, self.elements[place], stance)
         return row
 
     def tension(self, place: int, key: Key) -> Array:
         """Return the tension of an element in a phase in N, for small rotations: a row, shape (C,)."""
-        branch = self.element_key(key)[1 + place]
-        known = self._tensions.get((place, key[0], branch))
+        branch, stance = self.element_key(key)[1 + place], self.stance(key)
+        known = self._tensions.get((place, stance, branch))
         if known is None:
-            known = self._tensions[place, key[0], branch] = self._tension(place, key[0], branch)
+            known = self._tensions[place, stance, branch] = self._tension(place, stance, branch)
         return known
 
     @cached_property
-    def _tensions(self) -> dict[tuple[int, int, int], Array]:
+    def _tensions(self) -> dict[tuple[int, int | Key, int], Array]:
         return {}
 
-    def _tension(self, place: int, side: int, branch: int) -> Array:
-        each, stretch, known = self.elements[place], self.stretch(place, side), internal_places(self.elements)
+    def _tension(self, place: int, stance: int | Key, branch: int) -> Array:
+        each, stretch, known = self.elements[place], self.stretch(place, stance), internal_places(self.elements)
         pull = each.tension(branch)
         row = pull.stiffness * stretch + pull.damping * rate_of_elongation_row(stretch, self.layout)
         row[-1] += pull.force
@@ -348,11 +377,14 @@ class RockingModel(Value):
             On the degrees of freedom of the base.
         """
         first = len(self.properties.elements) if stories_only else 0
-        places = [place for place in self.attached_places if place >= first]
+        return self._forces_of([place for place in self.attached_places if place >= first], key)
+
+    def _forces_of(self, places: Sequence[int], key: Key) -> tuple[Array, Array]:
+        """Return what some elements add in a phase: as `attached_forces`."""
         if not places:
             layout = self.layout
             return np.zeros((layout.modes, layout.columns)), np.zeros((layout.freedoms, layout.columns))
-        reach = np.array([self.attached[place] for place in places])
+        reach = np.array([self.stretch(place, self.stance(key)) for place in places])
         tensions = np.array([self.tension(place, key) for place in places])
         of_modes = reach[:, : self.layout.modes] / self.properties.effective_mass
         of_base = reach[:, self.layout.rotation : self.layout.core : 2]

@@ -40,6 +40,7 @@ def _in_state(model: RockingModel, what: str, mend: str, state: Array) -> Solver
     modes = [("D", given[: layout.modes]), ("D'", given[layout.modes : layout.rotation])] if layout.modes else []
     told = [f"{name} = [{', '.join(values)}]" for name, values in modes]
     others = ["θ", "θ'", *(["x", "x'"] if layout.slip >= 0 else []), *(["z", "z'"] if layout.heave >= 0 else [])]
+    others += [f"θ_{k + 2}{rate}" for k in range(layout.n_joints) for rate in ("", "'")]
     told += [f"{name} = {value}" for name, value in zip(others, given[layout.rotation :], strict=True)]
     return SolverError(f"{what} The state there is {', '.join(told)}. {mend}")
 

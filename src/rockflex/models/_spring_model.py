@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.constants import GRAVITY
+from rockflex.foundation.errors import InputError
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
 from rockflex.models._elements import CLOSED, SUMS, internal_count, internal_places
 from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
@@ -26,7 +27,8 @@ from rockflex.models._state_layout import (
 from rockflex.structure._ground import Springs
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
-LOADED, LIFTED, RECEDING = 0, 1, 2
+# YIELDING: it carries its capacity, and settles for good as the base presses on.
+LOADED, LIFTED, RECEDING, YIELDING = range(4)
 STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
 
 
@@ -40,6 +42,9 @@ class SpringModel(RockingModel):
     In complete and yielding models springs and elements stand upright and travel with the base: the depth of a spring
     is z - x sin θ, and its force has the lever arm x cos θ about the point where the axis of the masses meets the base.
     So has an element. That point is held by the ground, or slides against the friction of all springs.
+
+    A spring with a finite capacity keeps its permanent settlement w_p as an internal variable, after those of the
+    elements; only simplified models have such springs.
 
     Parameters
     ----------
@@ -63,9 +68,23 @@ class SpringModel(RockingModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return self._layout(
-            n_branch_codes(self._key_size, self.code_base), slides=self.friction is not None, heaves=True
-        )
+        marks = n_branch_codes(self._key_size, self.code_base)
+        return self._layout(len(self.soft) + marks, slides=self.friction is not None, heaves=True)
+
+    @cached_property
+    def soft(self) -> tuple[int, ...]:
+        """The places of the springs that can yield."""
+        capacity = self.springs.capacity
+        return () if capacity is None else tuple(np.flatnonzero(np.isfinite(capacity)).tolist())
+
+    @property
+    def first_mark(self) -> int:
+        """The place of the first number that tells branches among the internal variables."""
+        return super().first_mark + len(self.soft)
+
+    def crushed(self, place: int) -> int:
+        """The place of the permanent settlement of a spring that can yield in the state."""
+        return self.layout.memory + internal_count(self.elements) + self.soft.index(place)
 
     def integrates(self, side: Array | int) -> Bools:
         """Return for every side whether its phases are integrated step by step: all of them or none."""
@@ -78,7 +97,9 @@ class SpringModel(RockingModel):
     @property
     def ground_parameters(self) -> dict[str, Any]:
         """The springs, the rotary inertia, the position at rest, and the friction if the base can slide."""
-        springs = {name: getattr(self.springs, name) for name in ("positions", "stiffness", "damping", "area")}
+        springs = {
+            name: getattr(self.springs, name) for name in ("positions", "stiffness", "damping", "area", "capacity")
+        }
         known = {"inertia": self.inertia, "rest": list(self.rest), **springs, "friction": self.friction}
         return {name: value for name, value in known.items() if value is not None}
 
@@ -91,7 +112,7 @@ class SpringModel(RockingModel):
     def branch_values(self) -> list[Collection[int]]:
         """Values of each of `branches_at`: of the side, every spring, the slip and every element."""
         slips = (STICK,) if self.friction is None else (STICK, 1, -1)
-        springs = [(LOADED, LIFTED, RECEDING)] * self.springs.n
+        springs = [(LOADED, LIFTED, RECEDING, YIELDING)] * self.springs.n
         return [self.sides, *springs, slips, *(each.branches for each in self.elements)]
 
     @property
@@ -116,7 +137,7 @@ class SpringModel(RockingModel):
 
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:  # noqa: ARG002
         """Return the branches at the states of a history, shape (n, K)."""
-        first = HEADER + self.layout.memory + internal_count(self.elements)
+        first = HEADER + self.layout.memory + self.first_mark
         codes = states[:, first : HEADER + self.layout.size]
         return np.column_stack(
             (np.zeros(side.size, dtype=np.int64), branches_of_codes(codes, self._key_size, self.code_base))
@@ -183,15 +204,46 @@ class SpringModel(RockingModel):
 
     def spring_forces(self, key: Key) -> Array:
         """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
-        loaded = np.array(key[1 : self.springs.n + 1]) == LOADED
-        return np.where(loaded[:, None], self.pushes, 0.0)
+        branches = np.array(key[1 : self.springs.n + 1])[:, None]
+        return np.where(branches == LOADED, self.pushes, np.where(branches == YIELDING, self.holds, 0.0))
 
     @cached_property
     def pushes(self) -> Array:
         """-k z_j - c z_j' of every spring: rows, shape (n, C)."""
         rates = np.zeros_like(self.depths)
         rates[:, self.layout.heave + 1], rates[:, self.layout.spin] = 1.0, -self.springs.positions
-        return -self.springs.stiffness[:, None] * self.depths - self.springs.damping[:, None] * rates
+        found = -self.springs.stiffness[:, None] * self.depths - self.springs.damping[:, None] * rates
+        for place in self.soft:
+            found[place, self.crushed(place)] = -self.springs.stiffness[place]
+        return found
+
+    @cached_property
+    def holds(self) -> Array:
+        """F_y - c z_j' of every spring that yields: rows, shape (n, C)."""
+        found = np.zeros_like(self.depths)
+        for place in self.soft:
+            found[place, self.layout.rotation : self.layout.core] = self.pushes[
+                place, self.layout.rotation : self.layout.core
+            ]
+            found[place, self.layout.rotation : self.layout.core : 2] = 0.0
+            assert self.springs.capacity is not None
+            found[place, -1] = self.springs.capacity[place]
+        return found
+
+    def permanent_settlements(self, states: Array) -> Array:
+        """Return the permanent settlement of every spring at the states of a history in m, shape (n, n_springs)."""
+        found = np.zeros((len(states), self.springs.n))
+        if not self.soft:
+            return found
+        assert self.springs.capacity is not None
+        branches = self.branches_at(states[:, SIDE], states[:, SIDE], states)[:, 1 : self.springs.n + 1]
+        moving = states[:, HEADER : HEADER + self.layout.moving]
+        for place in self.soft:
+            depth = moving @ self.depths[place, :-2]
+            settled = -depth - self.springs.capacity[place] / self.springs.stiffness[place]
+            kept = self.layout.of(states, self.crushed(place))
+            found[:, place] = np.where(branches[:, place] == YIELDING, settled, kept)
+        return found
 
     @cached_property
     def depths(self) -> Array:
@@ -200,10 +252,15 @@ class SpringModel(RockingModel):
         rows[:, self.layout.heave], rows[:, self.layout.rotation] = 1.0, -self.springs.positions
         return rows
 
-    def stretch(self, place: int, side: int) -> Array:
+    @property
+    def moving_places(self) -> tuple[int, ...]:
+        """The places of all elements."""
+        return tuple(range(len(self.elements)))
+
+    def stretch(self, place: int, stance: int | Key) -> Array:
         """Return the elongation of an element in m as a row over `stretched` states, shape (C,): zero at rest."""
         position, layout = self.elements[place].position, self.layout
-        row = super().stretch(place, side)
+        row = super().stretch(place, stance)
         if position is not None:
             row[layout.heave], row[layout.rotation] = 1.0, -position
         rest = float(self.turned(self.rest.rotation))
@@ -286,6 +343,12 @@ class SpringModel(RockingModel):
         speed = start[layout.heave + 1] - springs.positions * spin
         force = -springs.stiffness * depth - springs.damping * speed
         branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
+        if springs.capacity is not None and bool((-springs.stiffness * depth > springs.capacity).any()):
+            raise InputError(
+                "The start must be elastic, but a spring under the base would carry more than its capacity. Give a "
+                "smaller initial rotation, or a larger capacity.",
+                field="capacity",
+            )
         kept, of_elements = list[float](), list[int]()
         moving = np.append(start[: layout.moving], (0.0, 1.0))
         moving[layout.rotation] = turned
@@ -294,7 +357,7 @@ class SpringModel(RockingModel):
             of_elements.append(branch)
             kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
-        start[layout.memory :] = (*kept, *self.marks(key))
+        start[layout.memory :] = (*kept, *(0.0 for _ in self.soft), *self.marks(key))
         return key, start
 
     def leaning(self) -> tuple[Array, float]:

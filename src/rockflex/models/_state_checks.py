@@ -6,7 +6,7 @@ import numpy as np
 
 from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.errors import InputError
-from rockflex.models._elements import internal_count, internal_places
+from rockflex.models._elements import internal_places
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import BITS, HEADER, SIDE, TIME
 
@@ -47,7 +47,7 @@ def _marks(model: RockingModel) -> list[tuple[str, int, Collection[float]]]:
 def _codes(model: RockingModel) -> slice:
     """Return the columns of the numbers whose digits are branches."""
     memory, last = HEADER + model.layout.memory, HEADER + model.layout.memory + model.layout.n_internal
-    return slice(memory + internal_count(model.elements), last - bool(model.slip_marks))
+    return slice(memory + model.first_mark, last - bool(model.slip_marks))
 
 
 def _check_one_of(name: str, values: Array | Integers, allowed: Collection[float]) -> None:

@@ -21,7 +21,8 @@ SHIFT = 1  # the lowest branch is -1
 class StateLayout(NamedTuple):
     """Indices in the state vector [D_1..D_N, D'_1..D'_N, θ, θ'], for integrated models [.., z, E_d, E_i, E_h].
 
-    A base that may slide adds its slip and the rate of it after θ', one on springs its heave and the rate of that.
+    A base that may slide adds its slip and the rate of it after θ', one on springs its heave and the rate of that, and
+    a structure with joints above the base the rotation of each and its rate.
     ∫ (δ'/r)² dt follows if an integrated model has viscous dampers, and then the internal variables of all elements.
 
     A *row* is a linear functional of the first `moving` entries, the ground acceleration and the constant 1.
@@ -35,6 +36,9 @@ class StateLayout(NamedTuple):
         θ and θ'.
     slip, heave
         Displacement of the base to the right and upwards, each followed by its velocity.
+    joints, n_joints
+        Rotation of the first joint above the base, followed by its rate and by those of the other joints, and how many
+        there are.
     hysteresis
         z of Eq. 38.
     damped, put_in, yielded
@@ -58,6 +62,8 @@ class StateLayout(NamedTuple):
     spin: int
     slip: int
     heave: int
+    joints: int
+    n_joints: int
     hysteresis: int
     damped: int
     put_in: int
@@ -84,7 +90,12 @@ class StateLayout(NamedTuple):
     @property
     def freedoms(self) -> int:
         """Number b of the degrees of freedom of the base."""
-        return 1 + (self.slip >= 0) + (self.heave >= 0)
+        return 1 + (self.slip >= 0) + (self.heave >= 0) + self.n_joints
+
+    @property
+    def rotations(self) -> list[int]:
+        """The places of all rotations: that of the base, and of the joints above it."""
+        return [self.rotation, *(self.joints + 2 * k for k in range(self.n_joints))]
 
     def displacements(self, states: Array) -> Array:
         """Return D at the states of a history, shape (n, N)."""
@@ -108,6 +119,7 @@ def state_layout_of(
     n_internal: int = 0,
     slides: bool = False,
     heaves: bool = False,
+    n_joints: int = 0,
     springs: int = 0,
     elements: int = 0,
 ) -> StateLayout:
@@ -118,8 +130,9 @@ def state_layout_of(
     rotation = 2 * modes
     slip = rotation + 2 if slides else -1
     heave = rotation + 2 * (1 + slides) if heaves else -1
-    core = rotation + 2 * (1 + slides + heaves)
-    base = rotation, rotation + 1, slip, heave
+    joints = rotation + 2 * (1 + slides + heaves) if n_joints else -1
+    core = rotation + 2 * (1 + slides + heaves + n_joints)
+    base = rotation, rotation + 1, slip, heave, joints, n_joints
     if not integrated:
         size = core + n_internal
         absent = -1, -1, -1, -1, -1, -1, -1, -1

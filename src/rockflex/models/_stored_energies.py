@@ -3,7 +3,10 @@
 import numpy as np
 
 from rockflex.foundation.arrays import Array
+from rockflex.models._jointed_model import JointedModel
+from rockflex.models._named_quantities import levers_of_joints
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import GROUND, SIDE
 from rockflex.models._values_at_states import accelerations_at_states, acting_side
 from rockflex.structure._analysis import FloorModes
@@ -41,6 +44,8 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
             kinetic += climb * (0.5 * p.m_tot * climb + across * np.cos(rotation) - along * np.sin(rotation))
             raised = raised + p.m_tot * layout.of(states, layout.heave)
         return kinetic, strain, model.gravity * raised
+    if isinstance(model, JointedModel):
+        return model.kinetic_energy(states), strain, model.gravity * model.raised_weight(states)
     if layout.heave >= 0:
         kinetic += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
     if layout.slip >= 0:
@@ -56,6 +61,8 @@ def soil_strain(model: RockingModel, states: Array) -> Array:
     layout = model.layout
     depth = layout.of(states, layout.heave)[:, None]
     depth = depth - model.springs.positions * model.turned(layout.of(states, layout.rotation))[:, None]
+    if isinstance(model, SpringModel):
+        depth = depth + model.permanent_settlements(states)
     return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
 
 
@@ -70,7 +77,8 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     bend = rates[:, :n] @ floors.displacement.T  # u''
     angular = rates[:, n : n + 1]
     if not model.complete:
-        return ground + bend + floors.heights * angular
+        upper = rates[:, n + 1 :] @ levers_of_joints(model.properties, floors.heights).T if layout.n_joints else 0.0
+        return ground + bend + model.properties.turning_heights(floors.heights) * angular + upper
     rotation, spin = layout.of(states, layout.rotation)[:, None], layout.of(states, layout.spin)[:, None]
     sine, cosine = np.sin(rotation), np.cos(rotation)
     side = acting_side(states)

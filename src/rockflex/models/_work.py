@@ -26,7 +26,6 @@ MICRO = 1e-6
 HISTORY = 4e9  # bytes
 SWIFT = 10.0  # rad per time step, beyond which overdamped fast motions are excluded
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
-SIZES = 64  # largest number of sizes of tasks remembered
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
 
@@ -208,11 +207,6 @@ class Task:
     history: bool = False
     scale: float = 1.0
 
-    @property
-    def size(self) -> tuple[float | None, ...] | None:
-        """What the work depends on beside the model; None if it depends on every sample."""
-        return None if self.cost_model.flow else (self.record.size, self.dt, self.free_vibration, self.history)
-
     def work(self) -> EstimatedWork:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
         speed = 0.0
@@ -299,23 +293,6 @@ class Task:
             return self.free_vibration
         slowest = float(self.model.properties.omega.min(initial=math.inf))
         return 2.0 * math.pi / slowest
-
-
-class WorkGate:
-    """The tasks of a model that have passed the check of their work, so that others of the same size need none."""
-
-    def __init__(self) -> None:
-        self._accepted = set[tuple[object, ...]]()
-
-    def check(self, task: Task, limit: float | None) -> None:
-        """Raise `WorkLimitError` as `Task.check` does."""
-        size = task.size
-        if size is not None and (size, limit) in self._accepted:
-            return
-        task.check(limit)
-        if len(self._accepted) >= SIZES:
-            self._accepted.clear()
-        self._accepted.add((size, limit))
 
 
 def _lasting(seconds: float) -> str:

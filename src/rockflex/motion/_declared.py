@@ -1,4 +1,4 @@
-"""What the caller says of a file: unit, time step and layout."""
+"""The caller's statements about a file: unit, time step and layout."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args

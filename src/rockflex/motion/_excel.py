@@ -157,7 +157,7 @@ def excel_sheets(file: Path, content: bytes) -> list[ExcelSheet]:
 
 @dataclass(frozen=True)
 class SheetPart:
-    """What the XML of a sheet says that openpyxl does not tell of a workbook that is read row by row."""
+    """The part of a sheet's XML that openpyxl does not tell of a workbook that is read row by row."""
 
     longest_row: int  # bytes
     hidden_rows: frozenset[int]

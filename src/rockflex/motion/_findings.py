@@ -1,4 +1,4 @@
-"""What is known of the samples in a file, and what says so: unit, time step, quantity and component."""
+"""Findings about the samples in a file with their evidence: unit, time step, quantity and component."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What the lines above the numbers say of them: quantity, unit, time step, count and component."""
+"""Statements of the lines above the numbers: quantity, unit, time step, count and component."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -89,7 +89,7 @@ MAX_COUNT_DIGITS = 18  # of a count that are read; no file has more samples
 
 @dataclass(frozen=True)
 class Header:
-    """What the lines above the numbers say, each statement with its line."""
+    """The statements of the lines above the numbers, each with its line."""
 
     quantities: list[Evidence[Quantity]] = field(default_factory=list["Evidence[Quantity]"])
     units: list[Evidence[AccelerationUnit]] = field(default_factory=list[Evidence[AccelerationUnit]])

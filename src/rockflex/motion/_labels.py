@@ -1,4 +1,4 @@
-"""What the label of a column says: the quantity, the unit and the component."""
+"""Labels of columns: quantity, unit and component."""
 
 import re
 from dataclasses import dataclass

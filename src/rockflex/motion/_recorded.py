@@ -1,4 +1,4 @@
-"""What the readers of networks have in common: a motion that says what it is, and peaks in headers."""
+"""Common parts of the readers of networks: a motion that says what it is, and peaks in headers."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What quantity, unit, time step and component samples have, by all that is said of them."""
+"""Quantity, unit, time step and component of samples, by all that is said of them."""
 
 import re
 from dataclasses import dataclass

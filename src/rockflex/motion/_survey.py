@@ -122,7 +122,7 @@ class RecordSurvey(Value):
 
     @property
     def findings(self) -> dict[Finding, tuple[str, ...]]:
-        """What the readers found, and what says so, each with the files that it is true of."""
+        """The findings of the readers with their evidence, each with the files that it is true of."""
         files: dict[Finding, dict[str, None]] = {}
         for entry in self.entries:
             for each in entry.findings:

@@ -51,7 +51,7 @@ EXPECTED = "a target spectrum is expected as two columns, period and S_a"
 
 @dataclass(frozen=True)
 class TargetColumn:
-    """What the label of a column says: its quantity if that is known, and its unit, or one that is not known."""
+    """The label of a column: its quantity if that is known, and its unit, or one that is not known."""
 
     said: str = ""
     role: Role | None = None

@@ -17,6 +17,7 @@ from rockflex.plot._motion import plot_motion, plot_overturning_spectrum, plot_r
 from rockflex.plot._pushover import plot_pushover
 from rockflex.plot._record_set import plot_set
 from rockflex.plot._structure import plot_frequency_equation, plot_frequency_ratios, plot_mode_shapes, plot_tower
+from rockflex.plot._tornado import plot_tornado
 from rockflex.plot.animation import animate
 
 __all__ = [
@@ -47,6 +48,7 @@ __all__ = [
     "plot_spread",
     "plot_stripes",
     "plot_structure",
+    "plot_tornado",
     "plot_tower",
     "plot_yielding",
     "save_figure",

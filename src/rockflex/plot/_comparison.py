@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex.foundation.checks import checked_instance
@@ -10,12 +9,10 @@ from rockflex.foundation.language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import Size
 from rockflex.plot._history import plot_history, response_curves
-from rockflex.plot.animation._poses import FrameTiming, default_amplification, outline_of_response, structure_poses
-from rockflex.plot.animation._scene import StructurePanel
+from rockflex.plot.animation._scene import draw_structures_at
 from rockflex.response._comparison import Comparison
 
 _MM = 1.0 / 25.4  # inches
-_STILL = 1e-9  # speed of the response, at which no impact is marked after its instant
 
 
 def plot_comparison(
@@ -72,20 +69,9 @@ def draw_alternatives(comparison: Comparison, *, width: float, height: float) ->
     """Draw the structures of a comparison at the instant at which one of them rotates most, `width` by `height` mm."""
     runs = comparison.responses
     instant = max(runs, key=lambda run: run.max_rotation).time_of_max_rotation
-    times = np.array([instant])
     with figures.applied_figure_style():
         curves = response_curves(runs, [figures.literal_text(name) for name in comparison.names])
-        both = zip(curves, comparison.structures, strict=True)
-        outlines = [outline_of_response(curve.history, structure, i) for i, (curve, structure) in enumerate(both)]
-        poses = [
-            structure_poses(curve, outline, times, _STILL) for curve, outline in zip(curves, outlines, strict=True)
-        ]
         figure = figures.new_figure(width * _MM, height * _MM)
         figure.set_layout_engine("none")
-        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_axis_off()
-        panel = StructurePanel(axes, curves, poses, FrameTiming(times, 1.0, 1.0), default_amplification(curves, poses))
-        panel.show(0)
-        for part in panel.moving:
-            part.set_animated(False)
+        draw_structures_at(figure.add_axes((0.0, 0.0, 1.0, 1.0)), curves, comparison.structures, instant)
     return figure

@@ -1,5 +1,6 @@
-"""What stands there, to scale and with its dimensions: at rest, or at an instant of a response."""
+"""Drawings of structures to scale, with their dimensions: at rest, or at an instant of a response."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -46,6 +47,7 @@ from rockflex.structure._outline import (
     BODY,
     ELEMENT_COLORS,
     GROUND,
+    UPRIGHT,
     StructureOutline,
     structure_outline,
 )
@@ -289,8 +291,10 @@ def _notes(p: RockingProperties, o: StructureOutline, ground: Ground | None, bed
     side = max((float(each.points[:, 0].max()) for each in o.strokes[:-1]), default=0.0)
     body = min(side, min(-o.left, o.right))
     found: list[_Note] = []
+    how, foot = (BODY, 0.0) if p.columns is None else (UPRIGHT, p.columns.height)
     if p.base_mass:
-        found.append(_Note(f"{translated('base')}, {_amount(p.base_mass, 'kg')}", (0.9 * o.right, 0.0, BODY)))
+        base = translated("base") if p.columns is None else translated("slab and columns")
+        found.append(_Note(f"{base}, {_amount(p.base_mass, 'kg')}", (0.9 * o.right, foot, how)))
     if bed is not None:
         words = f"{translated('{n} springs', n=bed.n)}, Σ k = {_amount(bed.total_stiffness, 'N/m')}"
         found.append(_Note(words, (float(bed.positions[-1]), 0.0, GROUND)))
@@ -304,24 +308,24 @@ def _notes(p: RockingProperties, o: StructureOutline, ground: Ground | None, bed
         for first, count, mass in runs:
             number = f"{count} × " if count > 1 else "m = "
             height = o.masses[first + count - 1][0]
-            found.append(_Note(f"{number}{_amount(mass, 'kg')}", (body, height, BODY)))
+            found.append(_Note(f"{number}{_amount(mass, 'kg')}", (body, height, how)))
     elif runs:
         masses = [mass for _, mass in o.masses]
         words = f"{len(masses)} × {_amount(min(masses), 'kg')} … {_amount(max(masses), 'kg')}"
-        found.append(_Note(words, (body, o.top, BODY)))
+        found.append(_Note(words, (body, o.top, how)))
     if not o.masses:
         above = p.horizontal_mass - (p.base_mass or 0.0)
-        found.append(_Note(f"Σ m = {_amount(above, 'kg')}", (body, 0.6 * o.top, BODY)))
+        found.append(_Note(f"Σ m = {_amount(above, 'kg')}", (body, 0.6 * o.top, how)))
     if p.leaning_mass:
         words = translated("leaning columns")
-        found.append(_Note(f"{words}, {_amount(p.leaning_mass, 'kg')}", (side, 0.5 * o.top, BODY)))
+        found.append(_Note(f"{words}, {_amount(p.leaning_mass, 'kg')}", (side, 0.5 * o.top, how)))
     if p.stories and p.floors is not None:
         low, high = (limit(each.yield_force for each in p.stories) for limit in (min, max))
         forces = " … ".join(dict.fromkeys(_amount(each, "N") for each in (low, high)))
         middles = np.append(0.0, p.floors.heights)
         floor = p.stories[0].floor
         words = translated("{n} story yields at" if len(p.stories) == 1 else "{n} stories yield at", n=len(p.stories))
-        found.append(_Note(f"{words} {forces}", (body, 0.5 * float(middles[floor - 1] + middles[floor]), BODY)))
+        found.append(_Note(f"{words} {forces}", (body, foot + 0.5 * float(middles[floor - 1] + middles[floor]), how)))
     return found
 
 
@@ -329,12 +333,12 @@ def _story_runs(p: RockingProperties, o: StructureOutline) -> list[tuple[float, 
     """Return the lower and the upper end of stories of one height, with the text of their dimension."""
     if o.kind != "frame" or p.floors is None or p.floors.heights.size < 2 or (p.floors.story_heights <= 0.0).any():
         return []
-    levels = np.append(0.0, p.floors.heights)
+    levels = np.append(0.0, p.floors.heights) + (0.0 if p.columns is None else p.columns.height)
     runs = _runs(p.floors.story_heights)
     if len(runs) > _MAX_RUNS:
         low, high = float(p.floors.story_heights.min()), float(p.floors.story_heights.max())
         count = p.floors.heights.size
-        return [(0.0, float(levels[-1]), f"{count} × {short_number(low)} … {_length(high)}")]
+        return [(float(levels[0]), float(levels[-1]), f"{count} × {short_number(low)} … {_length(high)}")]
     return [
         (
             float(levels[first]),
@@ -478,6 +482,8 @@ class _Layout:
     def _draw_base(self, here: MetresToStagePoints) -> None:
         """Draw the distances from the axis of the masses to both edges, or half the width."""
         o = self._poses.outline
+        if o.turning < math.inf:  # columns stand side by side, each on an edge of its own
+            return
         y = here.ground - 15.0
         alike = abs(o.left + o.right) < 1e-9 * o.right
         for side, edge in (("B − e", o.right),) if not alike else ():

@@ -30,6 +30,7 @@ _BAR = 0.025  # height of an uplift bar as a share of the panel
 _POINTS = 2000  # across the panel, more than it has dots
 _OPTIONAL = (
     "horizontal_reaction",
+    "joint_rotation",
     "slip",
     "edge_uplift",
     "ground_acceleration",
@@ -219,8 +220,9 @@ class PanelQuantity:
         return figures.symbol_in_mathematics(HISTORY[self.name].symbol)
 
     def of(self, history: History) -> Array:
-        """Values over time."""
-        return getattr(history, self.name)
+        """Values over time; zero of joints that a structure has not."""
+        found = getattr(history, self.name)
+        return found if found.size else np.zeros(history.time.size)
 
     def peak(self, curve: "ResponseCurve") -> float:
         """Largest magnitude of a response, also between the nodes of its history."""
@@ -231,16 +233,17 @@ class PanelQuantity:
 
 PANELS = (
     "rotation", "top_displacement", "total_top_displacement", "base_moment", "base_shear", "horizontal_reaction",
-    "slip", "edge_uplift", "ground_acceleration",
+    "joint_rotation", "slip", "edge_uplift", "ground_acceleration",
 )  # fmt: skip
 
 
 def default_panels(curves: list[ResponseCurve]) -> list[str]:
-    """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
+    """All but ΣF_x; total displacement if the height of the top is known, and what joints, slip and edges add."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
     usual = [name for name in PANELS if name not in _OPTIONAL and (known or name != "total_top_displacement")]
     layouts = [curve.history.model.layout for curve in curves]
     moves = {
+        "joint_rotation": any(layout.n_joints for layout in layouts),
         "slip": any(layout.slip >= 0 for layout in layouts),
         "edge_uplift": any(layout.heave >= 0 for layout in layouts),
     }
@@ -301,8 +304,8 @@ def draw_curves(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]
             label=curve.label, zorder=curve.order,
         )  # fmt: skip
         lines.append(first)
-        for right in others:  # the right edge is thinner than the left one
-            right.set(linewidth=0.5 * style.width, label="_right")
+        for other in others:  # the right edge is thinner than the left one, a joint than that below
+            other.set(linewidth=0.5 * style.width, label="_other")
         if curve.overturned:
             axes.axvline(curve.response.end_time, color=style.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
@@ -335,6 +338,9 @@ def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor
     time, values = curve.history.time, quantity.of(curve.history)
     if quantity.name == "edge_uplift":
         when, side = float(time[values.max(axis=1).argmax()]), 1.0
+    elif quantity.name == "joint_rotation":
+        place = int(np.abs(values).argmax())
+        when, side = float(time[place // values.shape[1]]), float(np.sign(values.flat[place]))
     elif quantity.name in ("slip", "ground_acceleration"):
         node = int(np.abs(values).argmax())
         when, side = float(time[node]), float(np.sign(values[node]))
@@ -391,10 +397,10 @@ def plot_history(
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     panels
         Which of ``"rotation"``, ``"top_displacement"``, ``"total_top_displacement"``, ``"base_moment"``,
-        ``"base_shear"``, ``"horizontal_reaction"``, ``"slip"``, ``"edge_uplift"`` (of the left edge, and thinner of
-        the right one) and ``"ground_acceleration"``, from the top. Default: all but the last four; without the total
-        displacement if the height of the top is not known, and with the slip if a base can slide and the edges if one
-        is on springs.
+        ``"base_shear"``, ``"horizontal_reaction"``, ``"joint_rotation"`` (thinner of higher joints), ``"slip"``,
+        ``"edge_uplift"`` (of the left edge, and thinner of the right one) and ``"ground_acceleration"``, from the top.
+        Default: all but the last five; without the total displacement if the height of the top is not known, and with
+        the rotations of joints above the base, the slip if a base can slide and the edges if one is on springs.
     detail
         First and last time in s of a second column of panels, which shows this part alone. Default: none.
     lines

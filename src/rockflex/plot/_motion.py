@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
@@ -143,7 +144,7 @@ def _peak_text(name: str, value: float, unit: Unit) -> str:
     return f"{text} ({short_number(value / GRAVITY)} g)" if unit.name == "m/s²" else text
 
 
-def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
+def plot_selection(selection: Selection, *, period: float | None = None, size: Size | None = None) -> Figure:
     """Plot the spectra of chosen records with their target, mean and spread, and the ratio of the mean to the target.
 
     The mean is the arithmetic one, which codes compare with the target. The band reaches from the 16th to the 84th
@@ -154,6 +155,8 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     ----------
     selection
         The result of `Suite.select`.
+    period
+        A period in s that a line marks, such as the first one of the structure.
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
@@ -165,7 +168,7 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     Raises
     ------
     InputError
-        If the argument is not a selection; or the size is unknown.
+        If the argument is not a selection; the period is not positive; or the size is unknown.
 
     Examples
     --------
@@ -180,6 +183,7 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
         raise InputError(
             f"selection must be a Selection, but {type(selection).__name__} was given. Make one: suite.select(...)."
         )
+    marked = None if period is None else checked_positive("period", period, "s")
     target = selection.target
     positive = selection.periods[selection.periods > 0.0]
     low, high = (float(positive[0]), float(positive[-1])) if positive.size else (0.1, 1.0)
@@ -193,6 +197,8 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
             axes.axvspan(low, high, color=SHADE, zorder=0.5)
+            if marked is not None:
+                axes.axvline(marked, color=BLACK, linewidth=0.9, linestyle=":", label=f"$T_1$ = {marked:.3g} s")
         unit = figures.axis_unit("acceleration")
         _draw_selected_spectra(upper, selection, periods, rows / unit.size)
         name = figures.literal_text(target.name) or translated("target")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from string import ascii_uppercase
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,24 +15,32 @@ from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import ResponseCurve
 from rockflex.plot._loops import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
+from rockflex.plot.animation._scene import draw_structures_at
 from rockflex.response._response import Response
 
 _MM = 1.0 / 25.4  # inches
 _MARGIN = 1.08
 _MIN_PANEL_MM = 26.0  # mm of height that a panel needs
 _ONE_LINE_MM = 40.0  # mm of height in which every label has room in one line
+_MIN_STAGE_MM = 95.0  # mm of height in which a structure and its loops have room above each other
 _MIN_PANELS = 3  # panels in any case
 _MAX_LAW_POINTS = 500  # points of a line that is a path, not a law
 
 
 def draw_run_sheet(
-    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, width: float, height: float
+    responses: Response | Iterable[Response],
+    labels: Sequence[str] | None = None,
+    structure: Any = None,
+    *,
+    width: float,
+    height: float,
 ) -> Figure:
     """Draw the histories of models that ran under one record, one panel per quantity, and their loops beside them.
 
     The panels are the rotation, the displacement of the top, the base moment, and what a base does that slides or is on
     springs. The loops are those of base moment and rotation, over the static resisting moment of the first model that
-    can lift. `width` and `height` are in mm.
+    can lift. Where there is room above them, that model stands as it does at its largest rotation, with the shape of
+    the `structure` if that is known. `width` and `height` are in mm.
 
     Raises
     ------
@@ -46,7 +55,9 @@ def draw_run_sheet(
     with figures.applied_figure_style():
         figure = figures.new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
-        grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
+        stands = bool(lifting) and height >= _MIN_STAGE_MM
+        beside = bool(loops) or stands
+        grid = figure.add_gridspec(len(quantities), 1 + beside, width_ratios=(1.9, 1.0) if beside else None)
         panels: list[Axes] = []
         handles: list[Artist] = []
         for row, (quantity, mark) in enumerate(zip(quantities, ascii_uppercase, strict=False)):
@@ -64,9 +75,19 @@ def draw_run_sheet(
         uplifts = histories.shade_uplifts(panels, curves)
         panels[-1].set(xlabel=translated("time [s]"), xlim=histories.time_axis_limits(curves))
         figure.align_ylabels(panels)
-        if loops:
-            _draw_moment_rotation_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
+        stage = None
+        if beside:
+            rows = grid[:, 1].subgridspec(stands + bool(loops), 1)
+            stage = figure.add_subplot(rows[0]) if stands else stage
+            if loops:
+                mark = ascii_uppercase[len(quantities)]
+                _draw_moment_rotation_loops(figure.add_subplot(rows[int(stands)]), loops, mark)
         histories.add_legend(figure, curves, handles, uplifts, "", borderpad=0.1, borderaxespad=0.1)
+        if stage is not None:
+            figure.draw_without_rendering()  # the stage is drawn in points, so its place must be known
+            figure.set_layout_engine("none")
+            first = lifting[0]
+            draw_structures_at(stage, [first], [structure], first.response.time_of_max_rotation)
     return figure
 
 
@@ -98,6 +119,8 @@ def _run_sheet_panels(curves: list[ResponseCurve], height: float) -> list[str]:
         names += ["base_moment", "base_shear"]
     else:
         names.append("horizontal_reaction")
+    if any(model.layout.n_joints for model in models):
+        names.append("joint_rotation")
     if any(curve.response.max_slip for curve in curves):
         names.append("slip")
     if any(model.layout.heave >= 0 for model in models):

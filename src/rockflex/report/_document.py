@@ -171,5 +171,5 @@ class PublicationReport:
 
     @property
     def gaps(self) -> str:
-        """What the report lacks, in a sentence; empty for a complete one."""
+        """The parts that the report lacks, in a sentence; empty for a complete one."""
         return f"Unfinished: {', '.join(self.missing)} still to be computed." if self.missing else ""

@@ -1,11 +1,11 @@
 """Cases, studies and projects from their files: one function reads what can be run."""
 
-import math
 from pathlib import Path
 from typing import Any, cast
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path
+from rockflex.foundation.json import with_infinite_numbers
 from rockflex.report.project._project import SUFFIX, Project, read_project
 from rockflex.structure.file._object_tables import CLASS
 from rockflex.structure.file._structure_entry import KINDS
@@ -15,8 +15,6 @@ from rockflex.studies._study_kind import study_kind_named
 from rockflex.studies.case import Case, case_in_file
 from rockflex.studies.folders._folder import StudyFolder
 from rockflex.studies.spec import StudySpec
-
-_INFINITE = {"inf": math.inf, "-inf": -math.inf}  # as the document of a study has them
 
 
 def read_case(path: str | Path) -> Case | StudySpec | Project:
@@ -92,20 +90,10 @@ def _study_in_folder(folder: Path) -> StudySpec:
             "from there. Read its table with StudyFolder.load(path).frame(), or give the study's own file."
         )
     try:
-        return study_kind_named(document.get("study")).spec()(**_numbers_of_json(document))
+        return study_kind_named(document.get("study")).spec()(**with_infinite_numbers(document))
     except InputError as error:
         raise InputError(f"{folder}: {error}") from error
 
 
 def _keys(value: Any) -> list[str]:
     return list(cast("dict[str, Any]", value)) if isinstance(value, dict) else []
-
-
-def _numbers_of_json(value: Any) -> Any:
-    """Return the content of a document with its infinite numbers; names are texts."""
-    if isinstance(value, dict):
-        entries = cast("dict[str, Any]", value)
-        return {key: each if key == "name" else _numbers_of_json(each) for key, each in entries.items()}
-    if isinstance(value, list):
-        return [_numbers_of_json(each) for each in cast("list[Any]", value)]
-    return _INFINITE.get(value, value) if isinstance(value, str) else value

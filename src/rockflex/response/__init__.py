@@ -10,6 +10,7 @@ from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnS
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent
 from rockflex.response._record_set import RecordSet
 from rockflex.response._response import Response
+from rockflex.response._sensitivity import Sensitivity
 
 __all__ = [
     "BilinearFit",
@@ -27,6 +28,7 @@ __all__ = [
     "RecordSet",
     "Response",
     "SampledHistory",
+    "Sensitivity",
     "check",
     "to_matlab",
     "to_netcdf",

@@ -28,7 +28,7 @@ _NONE = 1e-9  # in SI units: what is left by rounding
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Value):
-    """What alternatives did under the same records, as `compare` returns it.
+    """The responses of alternatives to the same records, as `compare` returns them.
 
     Attributes
     ----------

@@ -20,6 +20,7 @@ from rockflex.foundation.values import Value
 from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._element_states import element_energies
 from rockflex.models._elements import CLOSED, rate_of_elongation_row
+from rockflex.models._jointed_model import JointedModel
 from rockflex.models._motion_between_states import (
     IntervalsOfPhase,
     LinearMotion,
@@ -29,7 +30,7 @@ from rockflex.models._motion_between_states import (
 )
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._spring_model import LOADED
+from rockflex.models._spring_model import LOADED, YIELDING, SpringModel
 from rockflex.models._state_layout import HEADER, SIDE
 from rockflex.models._stored_energies import soil_strain, stored_energies
 from rockflex.models._values_at_states import under_more_gravity
@@ -216,24 +217,30 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Energ
         swept, first = swept_elements(model), 4
         if model.springs is not None:
             # The force of a spring that is loaded is that of its stiffness, which is stored, and that of its dashpot.
-            loaded = np.flatnonzero(np.array(part.key[1 : model.springs.n + 1]) == LOADED)
+            branches = np.array(part.key[1 : model.springs.n + 1])
+            loaded = np.flatnonzero((branches == LOADED) | (branches == YIELDING))
             soil[np.ix_(part.rows, loaded)] = model.springs.damping[loaded] * found[:, 4 + loaded]
             first += model.springs.n
         sweeps[part.rows[:, None], swept] = found[:, first:]
+    if isinstance(model, SpringModel) and model.springs.capacity is not None:
+        crushed = np.diff(model.permanent_settlements(states), axis=0)  # while a spring carries its capacity
+        soil += (
+            np.where(crushed != 0.0, np.where(np.isfinite(model.springs.capacity), model.springs.capacity, 0.0), 0.0)
+            * crushed
+        )
     return EnergyBetweenStates(damped, ground, friction, swing, soil, sweeps)
 
 
 def swept_integrals(model: RockingModel, states: Array, work: EnergyBetweenStates) -> Array:
     """Return ∫ δ'² dt of each element between adjacent states in m²/s, shape (n_states - 1, E)."""
-    if model.springs is not None or not model.elements:
+    if len(model.moving_places) == len(model.elements):
         return work.sweeps
     return work.sweeps + model.arms(states[:-1, SIDE]) ** 2 * work.swing[:, None]
 
 
 def swept_elements(model: RockingModel) -> list[int]:
     """Return the places of viscous elements whose elongation does not follow from the rotation."""
-    places = range(len(model.elements)) if model.springs is not None else model.attached_places
-    return [place for place in places if model.elements[place].tension(0).damping > 0.0]
+    return [place for place in model.moving_places if model.elements[place].tension(0).damping > 0.0]
 
 
 class Table(NamedTuple):
@@ -272,8 +279,15 @@ class PhaseWork:
             self._lift = p.m_tot * unit[layout.heave + 1]
         elif key[0] != CLOSED:
             self._lift = key[0] * p.m_tot * p.pivot(key[0]).arm * unit[layout.spin]
+        spins, tilt = unit[[place + 1 for place in layout.rotations]], self._tilt[None]
+        if isinstance(model, JointedModel):
+            self._push += model.levers[1:] @ spins[1:]
+            lifts = model.lifts_by(np.array(model.stance(key)))
+            self._lift += (lifts * model.weights)[1:] @ spins[1:]
+            tilt = model.toppling @ unit[layout.rotations]
+        self._tilt, self._turns = tilt, spins
         for place in swept_elements(model):
-            rates.append(motion.taken(rate_of_elongation_row(model.stretch(place, CLOSED), layout)))
+            rates.append(motion.taken(rate_of_elongation_row(model.stretch(place, model.stance(key)), layout)))
         self._rates = np.array(rates)
         # Few independent rates, of which all others are sums: θ', the heave's and those of the modes.
         self._base, self._shares = _independent(self._rates)
@@ -359,7 +373,8 @@ class PhaseWork:
             push, held = z[..., -3] * (z @ self._push), z @ self._held
             if shaking is not None:
                 up = shaking.rise[:, None] + (k + POINTS) * h * shaking.slope[:, None]
-                push += up * (z @ self._lift - (z @ self._tilt) * rates[..., 0])
+                tilting = ((z @ self._tilt.T) * (z @ self._turns.T)).sum(axis=-1)
+                push += up * (z @ self._lift - tilting)
                 held += up * (z @ self._heavier)
             found[:, 0] += (_squares(z @ self._drag.T) * weights).sum(axis=1)
             found[:, 1] -= (push * weights).sum(axis=1)

@@ -11,7 +11,7 @@ from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite_vector, checked_positive, checked_whole_number
 from rockflex.foundation.errors import InputError, MissingQuantityError
 from rockflex.foundation.values import Value
-from rockflex.models._named_quantities import floor_quantities
+from rockflex.models._named_quantities import floor_quantities, levers_of_joints
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import TIME
 from rockflex.models._stored_energies import floor_accelerations
@@ -138,7 +138,11 @@ def _jumps(model: RockingModel, floors: FloorModes, states: Array) -> tuple[Arra
     Velocities change at impacts, where θ = 0, so the sum is that of small rotations for all models.
     """
     layout = model.layout
-    speed = layout.of(states, layout.spin)[:, None] * floors.heights + layout.velocities(states) @ floors.displacement.T
+    heights = model.properties.turning_heights(floors.heights)
+    speed = layout.of(states, layout.spin)[:, None] * heights + layout.velocities(states) @ floors.displacement.T
+    if layout.n_joints:
+        spins = np.column_stack([layout.of(states, place + 1) for place in layout.rotations[1:]])
+        speed = speed + spins @ levers_of_joints(model.properties, floors.heights).T
     if layout.slip >= 0:
         speed = speed + layout.of(states, layout.slip + 1)[:, None]
     sudden = np.diff(states[:, TIME])[:, None] == 0.0

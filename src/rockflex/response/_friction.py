@@ -1,19 +1,21 @@
 """The friction required to prevent sliding (Silva & Stojadinović 2024, Eq. 20)."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from functools import cached_property
 from itertools import repeat
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex.engine.stops import check_interruption
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_positive, real_or_nan
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
-from rockflex.models._motion_between_states import MotionBetween
+from rockflex.models._motion_between_states import IntervalsBetweenStates, MotionBetween
 from rockflex.models._reactions import Reactions, printed_reactions, reactions
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
@@ -24,6 +26,9 @@ IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
 MAX_PHASE_STEP = 0.2  # radians of the fastest mode between adjacent evaluation points
 ROUNDING = 1e-12  # relative: a base that slides demands its coefficient all the time
 MIN_POINTS, MAX_POINTS = 4, 2000  # evaluation points in the interval between adjacent states
+ROUNDS, CLOSER = 4, 9  # a peak is looked for so often, each time at so many places around the highest one before
+
+AnglesAt: TypeAlias = Callable[[Sequence[float]], Array]  # angles at rising places of an interval
 
 
 def friction_coefficient(mu: float) -> float:
@@ -105,14 +110,16 @@ class Friction:
         for k in np.flatnonzero((start > 0.0) & (start < 1.0)):
             # The first point outside the window also covers the start of the interval, in place of the point before.
             first = int(np.searchsorted(self._places, start[k]))
-            looks[first, k] = max(looks[first, k], self._angle_at(int(k), float(start[k])))
+            looks[first, k] = max(looks[first, k], float(self._angles_within(int(k))([float(start[k])])[0]))
         best = float(looks.max())
         highest = looks.max(axis=0)
-        for k in np.argsort(-highest):  # from the highest, which leaves the fewest others that may exceed it
+        above = np.where(start < 1.0, highest + self._rise, -1.0)
+        may = np.flatnonzero(above > best * (1.0 + ROUNDING))
+        for k in may[np.argsort(-highest[may])].tolist():  # from the highest, which leaves the fewest others
             if not 0.0 < best < 0.5 * math.pi:
                 break
-            if start[k] < 1.0 and highest[k] + self._rise[k] > best * (1.0 + ROUNDING):
-                best = max(best, self._peak(int(k), int(np.argmax(looks[:, k])), float(start[k]))[1])
+            if above[k] > best * (1.0 + ROUNDING):
+                best = max(best, self._peak(k, int(np.argmax(looks[:, k])), float(start[k]))[1])
         return float(_coefficient(np.array(max(best, 0.0))))
 
     def sliding_time(self, mu: float) -> float | None:
@@ -136,31 +143,45 @@ class Friction:
 
     def _first_above(self, k: int, limit: float) -> float | None:
         """Return the place in an interval at which the angle first exceeds a limit."""
-        from scipy.optimize import brentq
-
         for look in range(self._places.size):
             below, above = float(self._places[max(look - 1, 0)]), float(self._places[look])
             angle = self._looks[look, k]
             if angle <= limit < angle + self._rise[k]:
                 above, angle = self._peak(k, look, 0.0)
             if angle > limit:
-                if self._angle_at(k, below) > limit:
-                    return below
-                return float(brentq(lambda place: self._angle_at(k, place) - limit, below, above, xtol=1e-12))  # pyright: ignore[reportArgumentType]
+                return self._crossing(self._angles_within(k), limit, below, above)
         return None
+
+    @staticmethod
+    def _crossing(angles_at: AnglesAt, limit: float, below: float, above: float) -> float:
+        """Return the place between two places at which the angle, above the limit at the second, exceeds it."""
+        from scipy.optimize import brentq
+
+        if angles_at([below])[0] > limit:
+            return below
+        return float(brentq(lambda place: angles_at([place])[0] - limit, below, above, xtol=1e-12))  # pyright: ignore[reportArgumentType]
 
     def _peak(self, k: int, look: int, start: float) -> tuple[float, float]:
         """Return place and angle of the peak near one point of an interval, not before `start`."""
-        from scipy.optimize import minimize_scalar
-
         low = max(float(self._places[max(look - 1, 0)]), start)
         high = float(self._places[min(look + 1, self._places.size - 1)])
+        angles_at = self._angles_within(k)
         if low >= high:
-            return high, self._angle_at(k, high)
-        found = minimize_scalar(
-            lambda place: -self._angle_at(k, place), bounds=(low, high), method="bounded", options={"xatol": 1e-9}
-        )
-        return float(found.x), -float(found.fun)
+            return high, float(angles_at([high])[0])
+        top, places, angles = 0, np.zeros(0), np.zeros(0)
+        for _ in range(ROUNDS):
+            places = np.linspace(low, high, CLOSER)
+            angles = angles_at(places.tolist())
+            top = int(angles.argmax())
+            low, high = places[max(top - 1, 0)], places[min(top + 1, CLOSER - 1)]
+        best = float(places[top]), float(angles[top])
+        if not 0 < top < CLOSER - 1:
+            return best
+        before, here, after = angles[top - 1 : top + 2]
+        if before + after >= 2.0 * here:  # by rounding
+            return best
+        crown = float(places[top] + 0.5 * (high - places[top]) * (before - after) / (before - 2.0 * here + after))
+        return max(best, (crown, float(angles_at([crown])[0])), key=lambda found: found[1])
 
     @cached_property
     def _stretches(self) -> NDArray[np.intp]:
@@ -187,7 +208,8 @@ class Friction:
 
     def _looks_of(self, *signs: "Friction") -> list[Array]:
         """Return `_looks` with each of some signs of the weight, from the same motion."""
-        every = list(self._angles(self._states, self._rates, self._places.tolist(), signs))
+        motion = self._motion_between(self._states)
+        every = list(self._angles(self._states, self._rates, motion, self._places.tolist(), signs))
         return [np.stack(each) for each in zip(*every, strict=True)]
 
     @cached_property
@@ -203,29 +225,53 @@ class Friction:
         last = impacts[np.searchsorted(impacts, begin, side="right") - 1]
         return np.maximum((last + window - begin) / length, 0.0)
 
-    def _angle_at(self, k: int, place: float) -> float:
-        """Return the angle at a place of one interval."""
+    def _angles_within(self, k: int) -> AnglesAt:
+        """Return the angles at rising places of one interval as a function of these."""
         pair = slice(self._stretches[k], self._stretches[k] + 2)
-        return float(next(self._angles(self._states[pair], self._rates[pair], [place], (self,)))[0][0])
+        states, rates = self._states[pair], self._rates[pair]
+        motion = self._motion_between(states)
+
+        def angles_at(places: Sequence[float]) -> Array:
+            found = list(self._between(states, rates, motion, places))
+            rows, moved = np.concatenate([inside for inside, _ in found]), found[0][1]
+            if moved is None:
+                return self._angle(self._reactions_at(rows, accelerations_at_states(self._model, rows)))
+            return self._angle(
+                self._reactions_at(rows, np.concatenate([each for _, each in found if each is not None]))
+            )
+
+        return angles_at
+
+    def _motion_between(self, states: Array) -> IntervalsBetweenStates | None:
+        """Return the motion between states where it is linear; None for a hysteretic spring."""
+        return None if self._linear is None else self._linear.intervals(states)
 
     def _angles(
-        self, states: Array, rates: Array, places: Sequence[float], signs: Sequence["Friction"]
+        self,
+        states: Array,
+        rates: Array,
+        motion: IntervalsBetweenStates | None,
+        places: Sequence[float],
+        signs: Sequence["Friction"],
     ) -> Iterator[list[Array]]:
         """Yield the angles with each of some signs at rising places of every interval of positive length."""
         lasting = np.diff(states[:, TIME]) > 0.0
-        for rows, moved in self._between(states, rates, places):
+        for rows, moved in self._between(states, rates, motion, places):
+            check_interruption()  # many stiff springs need many places
             inside = rows[lasting]
             known = accelerations_at_states(self._model, inside) if moved is None else moved[lasting]
             yield [each._angle(each._reactions_at(inside, known)) for each in signs]
 
-    def _between(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[tuple[Array, Array | None]]:
+    def _between(
+        self, states: Array, rates: Array, motion: IntervalsBetweenStates | None, places: Sequence[float]
+    ) -> Iterator[tuple[Array, Array | None]]:
         """Yield states at rising places of every interval, and accelerations if these do not follow from the states.
 
         The latter is the case for a hysteretic spring. Linear models are exact; otherwise a polynomial of fifth degree
         through both states is used.
         """
         steps = np.diff(states[:, [TIME, GROUND, RISE]], axis=0)
-        exact = repeat(None) if self._linear is None else self._linear.intervals(states).along(places)
+        exact = repeat(None) if motion is None else motion.along(places)
         for place, inside in zip(places, exact, strict=False):
             rows = states[:-1].copy()
             rows[:, [TIME, GROUND, RISE]] += place * steps

@@ -17,6 +17,7 @@ from rockflex.foundation.values import Value
 from rockflex.models._element_states import element_forces, element_states
 from rockflex.models._reactions import spring_forces
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._values_at_states import accelerations_at_states
 from rockflex.motion._ground_motion import GroundMotion
@@ -26,6 +27,7 @@ from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, interpolated_states, only_of_run, settled_rotation
 from rockflex.response._peaks import global_histories
+from rockflex.response._sensitivity import Sensitivity, sensitivity_of_history
 from rockflex.response._tables import history_to_dataframe, history_to_dataset
 from rockflex.structure._ground import Springs
 
@@ -140,6 +142,15 @@ class History(Value):
         (0.0198, 0.0)
         """
         return settled_rotation(self.model, self.states, work_limit)
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """By how many per cent each peak changes for 1 % on the scale of the record, and a note where that is much.
+
+        Found by running the record once more, at the first use. An `InputError` tells of a model that is not linear
+        between events.
+        """
+        return sensitivity_of_history(self.model, self.states)
 
     def resample(self, dt: float) -> "SampledHistory":
         """Return the motion at equal steps from the first state to the last, as `at` does.
@@ -324,6 +335,12 @@ class History(Value):
         return self.states[:, RISE]
 
     @property
+    def joint_rotation(self) -> Array:
+        """Rotation of each joint above the base in rad, relative to what is below it, shape (n_states, n_joints)."""
+        layout = self.model.layout
+        return self.states[:, [HEADER + place for place in layout.rotations[1:]]]
+
+    @property
     def slip(self) -> Array:
         """Displacement of the base along the ground in m, positive to the right; zero if it cannot slide."""
         return self._of_base(self.model.layout.slip)
@@ -351,6 +368,12 @@ class History(Value):
     def uplifted(self) -> Bools:
         """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
         return self.model.uplifted(self.states)
+
+    @property
+    def permanent_settlement(self) -> Array:
+        """Permanent settlement of each spring in m, shape (n_states, n_springs); none on rigid ground."""
+        model = self.model
+        return model.permanent_settlements(self.states) if isinstance(model, SpringModel) else self.spring_force
 
     @property
     def spring_force(self) -> Array:

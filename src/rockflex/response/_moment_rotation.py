@@ -26,7 +26,7 @@ _OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "eleme
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MomentRotationPath(Value, ABC):
-    """What paths on rigid ground and on springs have in common; between adjacent points everything is linear."""
+    """A path on rigid ground or on springs; between adjacent points everything is linear."""
 
     properties: RockingProperties
     rotation: Array

@@ -13,7 +13,7 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.units import QUANTITIES as KINDS_OF_QUANTITIES
 from rockflex.foundation.units import Unit, UnitSystem
 
-Runs = Literal["all", "floors", "tendons", "dissipating elements", "sliding", "springs"]
+Runs = Literal["all", "floors", "tendons", "dissipating elements", "sliding", "springs", "joints"]
 _OTHER_UNITS = {"angular velocity": "rad/s", "angular acceleration": "rad/s2", "distance": "km"}
 
 
@@ -79,6 +79,7 @@ HISTORY: Mapping[str, Output] = {
     "slip_velocity": Output("x'", "velocity", "velocity of the slip", of="sliding"),
     "heave": Output("z", "displacement", "rise of the base at the axis of the masses", of="springs"),
     "spring_force": Output("N_j", "force", "upward force of each spring", of="springs", across="spring"),
+    "joint_rotation": Output("θ_j", "rotation", "rotation of each joint above the base", of="joints", across="joint"),
     "rotation_acceleration": Output("θ''", "angular acceleration", "acceleration of the rotation"),
     "modal_displacement": Output("D_n", "displacement", "modal displacement", across="mode"),
     "modal_velocity": Output("D'_n", "velocity", "modal velocity", across="mode"),
@@ -95,6 +96,9 @@ HISTORY: Mapping[str, Output] = {
     "element_elongation": Output("δ", "displacement", "elongation of each element", across="element"),
     "tendon_force": Output("T", "force", "force of each tendon", of="tendons", across="tendon"),
     "edge_uplift": Output("edges", "displacement", "rise of edges", across="edge"),
+    "permanent_settlement": Output(
+        "w_p", "displacement", "permanent settlement of each spring", of="springs", across="spring"
+    ),
     "soil_pressure": Output("p", "stress", "pressure of each spring on the ground", of="springs", across="spring"),
     "bearing_pressure": Output("q", "stress", "static bearing pressure", of="springs"),
     "friction_demand": Output("|ΣF_x|/ΣF_z", "ratio", "friction demand"),
@@ -166,6 +170,10 @@ OUTPUTS: Mapping[str, Output] = {
         "`settled_rotation()` continues it",
         of="dissipating elements",
     ),
+    "max_joint_rotation": Output(
+        "θ_joint", "rotation", "largest rotation of the joints above the base",
+        ", relative to what is below; zero without such joints", of="joints",
+    ),
     "max_slip": Output(
         "x_max", "displacement", "largest slip of the base along the ground",
         "; zero unless the ground has a `friction`", of="sliding",
@@ -183,10 +191,23 @@ OUTPUTS: Mapping[str, Output] = {
         "edge down", "displacement", "how far an edge of the base sinks into the ground", "; zero on rigid ground",
         of="springs",
     ),
+    "settlement": Output(
+        "z_end", "displacement", "settlement of the base at the end of the run",
+        ", at the axis of the masses, from the level at which the springs are unloaded", of="springs",
+    ),
+    "max_permanent_settlement": Output(
+        "w_p", "displacement", "largest permanent settlement of a spring", "; zero where springs do not yield",
+        of="springs",
+    ),
     "leaning_push": Output(
         "Σ l g θ/V_b", "ratio", "push of leaning columns on the floors over the base shear",
         ", at the largest |θ| and the largest base shear; zero without leaning mass. The push is neglected, and above "
         "0.05 a warning says so",
+    ),
+    "column_pull": Output(
+        "M_b/M_pull", "ratio", "largest base moment over that which first pulls a column of a podium up",
+        ", where the weight is shared by all columns; zero without a podium, or where its `column_spacing` is not "
+        "known. Above 1 a warning says so",
     ),
     "n_uplifts": Output(
         "uplifts", "count", "number of uplifts",
@@ -224,6 +245,8 @@ OF_TABLES: Mapping[str, Output] = {
     "sliding_time": Output("slides at", "time", "time at which the base would slide"),
     "nominal_limit": Output("θ_nom", "rotation", "nominal limit of overturning"),
     "*_edge_uplift": Output("edge", "displacement", "rise of an edge of the base"),
+    "joint_rotation_*": Output("θ_j", "rotation", "rotation of a joint above the base"),
+    "permanent_settlement_*": Output("w_p", "displacement", "permanent settlement of a spring"),
     "spring_force_*": Output("N_j", "force", "upward force of a spring"),
     "distance_km": Output("", "distance", "distance of the station"),
 }
@@ -238,7 +261,7 @@ REACTIONS = ("max_horizontal_reaction", "min_vertical_reaction")
 DEMANDS_OF_SET = (
     "max_rotation", "max_top_displacement", "max_total_top_displacement", "max_story_drift", "max_floor_acceleration",
     "max_base_moment", "max_base_shear", "max_horizontal_reaction", "min_vertical_reaction", "max_tendon_force",
-    "max_slip", "max_edge_uplift", "max_edge_settlement",
+    "max_slip", "max_edge_uplift", "max_edge_settlement", "max_permanent_settlement", "max_joint_rotation",
 )  # fmt: skip
 """The demands of a set of records."""
 DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment",
@@ -247,7 +270,7 @@ DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_dr
 COMPARED_DEMANDS = (
     "max_rotation", "balance_ratio", "max_top_displacement", "max_total_top_displacement", "max_story_drift",
     "max_floor_acceleration", "max_base_shear", "max_base_moment", "tendon_utilisation", "max_edge_uplift",
-    "max_edge_settlement", "max_slip", "residual_rotation",
+    "max_edge_settlement", "max_permanent_settlement", "max_slip", "residual_rotation", "max_joint_rotation",
 )  # fmt: skip
 """The demands of a comparison, in the order of its table."""
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import compress
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from rockflex.models._named_quantities import (
     element_moves,
     element_speeds,
     floor_quantities,
+    joint_rotations,
     quantities,
     rotation_by_side,
     rotation_rate_by_side,
@@ -25,6 +27,7 @@ from rockflex.models._named_quantities import (
 )
 from rockflex.models._quantities import LIFT, LINEAR, Quantities, joined_quantities
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import HEADER, SIDE, StateLayout
 from rockflex.models._values_at_states import quantities_at_states
 from rockflex.structure._rocking import RockingProperties
@@ -36,6 +39,18 @@ def leaning_push(properties: RockingProperties, rotation: Any, shear: Any) -> An
     """Return the push Σ l_i g |θ| of leaning columns over the base shear, for largest values of one run or of many."""
     push = properties.leaning_mass * GRAVITY * np.asarray(rotation)
     return np.divide(push, shear, out=np.zeros_like(push), where=np.asarray(shear) > 0.0)
+
+
+def max_permanent_settlement(model: RockingModel, final: Array) -> float:
+    """Return the largest permanent settlement of a spring in m in the last state of a run; zero on rigid ground."""
+    if not isinstance(model, SpringModel):
+        return 0.0
+    return float(model.permanent_settlements(np.concatenate((np.zeros(HEADER), final))[None]).max())
+
+
+def column_pull(properties: RockingProperties, moment: float) -> float:
+    """Return the base moment of a run in N m over that which first pulls a column up; zero if that is not known."""
+    return 0.0 if properties.columns is None else moment / properties.columns.pull_moment
 
 
 def may_fall(
@@ -100,21 +115,13 @@ class NamedPeakRows:
 
     @classmethod
     def of(
-        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: Mapping[str, int] | None = None
+        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: tuple[str, ...] = ()
     ) -> "NamedPeakRows":
-        """Return the rows of parts in their order, after other places.
+        """Return the rows of parts in their order, after other names.
 
         A part has a tuple with the name of each row, or one name for all its rows.
         """
-        places: dict[str, int | slice] = dict(before or {})
-        first = len(places)
-        for name, part in parts:
-            end = first + len(part)
-            if isinstance(name, str):
-                places[name] = slice(first, end)
-            else:
-                places |= zip(name, range(first, end), strict=True)
-            first = end
+        places = _places_of_rows(tuple([(name, len(part)) for name, part in parts]), before)
         return cls(joined_quantities([part for _, part in parts]), places)
 
     def named(self, peaks: Array) -> dict[str, Array]:
@@ -122,8 +129,25 @@ class NamedPeakRows:
         return {name: peaks.T[place] for name, place in self.places.items()}
 
 
+@lru_cache(maxsize=256)
+def _places_of_rows(
+    parts: tuple[tuple[tuple[str, ...] | str, int], ...], before: tuple[str, ...]
+) -> Mapping[str, int | slice]:
+    """Return the places of the rows of parts by name, of which each has a number of rows."""
+    places: dict[str, int | slice] = {name: place for place, name in enumerate(before)}
+    first = len(before)
+    for name, count in parts:
+        end = first + count
+        if isinstance(name, str):
+            places[name] = slice(first, end)
+        else:
+            places |= zip(name, range(first, end), strict=True)
+        first = end
+    return places
+
+
 class TrackedPeaks(NamedTuple):
-    """What a run tracks: largest magnitudes, and, on springs, largest values."""
+    """The peaks that a run tracks: largest magnitudes, and, on springs, largest values."""
 
     peaks: NamedPeakRows
     extremes: NamedPeakRows | None
@@ -155,6 +179,8 @@ def tracked_quantities(
     if tracked_elements(model):
         most.append(("element_moves", element_moves(model)))
         parts.append(("element_speeds", element_speeds(model)))
+    if model.layout.n_joints:
+        parts.append(("joint_rotation", joint_rotations(model)))
     if model.springs is None and model.lifts and any(each.rate_dependent for each in under):
         parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
@@ -162,7 +188,7 @@ def tracked_quantities(
     if floors and p.floors is not None:
         names = FLOORS[:-1] if model.integrated else FLOORS
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
-    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
+    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], ("rotation",))  # the engine puts the rotation first
     return TrackedPeaks(peaks, NamedPeakRows.of(most) if most else None)
 
 
@@ -216,6 +242,35 @@ class ElementPeaks(NamedTuple):
     ductility: Array
     residual_drift: Array
     residual_drift_ratio: Array
+
+
+def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks) -> dict[str, Any]:
+    """Return the fields of a `Response` that follow from the peaks and the last state of a run, by name."""
+    p, final, peaks = model.properties, solution.final_state, tracked.of(solution)
+    rotation, (right, left) = float(peaks["rotation"]), largest_rotations(peaks)
+    uplift, settlement = largest_edge_moves(model, peaks)
+    found = {f"max_{name}": float(peaks[name]) for name in ("rotation", *GLOBAL)}
+    if p.top_height is None:
+        found["max_total_top_displacement"] = math.nan
+    least = p.resting_reaction - solution.lost_support  # springs cannot pull: in flight only rounding would say so
+    return {
+        **found,
+        "min_vertical_reaction": least if model.springs is None else max(least, 0.0),
+        **element_peaks(model, element_extremes(model, peaks), final)._asdict(),
+        "residual_rotation": math.nan
+        if solution.overturned
+        else float(final[model.layout.rotation]) - model.rest.rotation,
+        "balance_ratio": float(balance_ratio(model, right, left)),
+        "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
+        "settlement": 0.0 if model.springs is None else -float(final[model.layout.heave]),
+        "max_permanent_settlement": max_permanent_settlement(model, final),
+        "max_slip": float(peaks.get("slip", 0.0)),
+        "residual_slip": float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
+        "max_edge_uplift": uplift,
+        "max_edge_settlement": settlement,
+        "leaning_push": float(leaning_push(p, rotation, found["max_base_shear"])),
+        "column_pull": column_pull(p, found["max_base_moment"]),
+    }
 
 
 def _fixed(values: ArrayLike) -> NDArray[Any]:
@@ -295,7 +350,7 @@ def element_extremes(model: RockingModel, peaks: Mapping[str, Array]) -> list[El
     """Return the extremes of the elements of a run, and then those of the stories that yield."""
     tracked = tracked_elements(model)
     known = dict(zip(tracked, _extremes_of(model, peaks), strict=True)) if tracked else {}
-    if model.springs is not None:
+    if len(known) == len(model.elements):
         return [known[place] for place in range(len(model.elements))]
     swing = peaks.get("rotation_rate_by_side", np.zeros(1))  # one value if the sides do not differ
     under = extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))

@@ -248,9 +248,11 @@ class _PushoverEquilibria:
         self.rows = self.rows.reshape(len(self.elements), p.n_modes + 1)
         self.attached = np.array([each.position is None for each in self.elements], dtype=bool)
         self.stiffness = np.diag(np.append(p.effective_mass * p.omega**2, -p.l0r * model.gravity))
-        self.push = np.append(pattern @ floors.displacement, pattern @ floors.heights)
+        self.push = np.append(pattern @ floors.displacement, pattern @ p.turning_heights(floors.heights))
         self.weight = np.append(np.zeros(p.n_modes), -p.pivot(RIGHT).weight_moment)
-        self.top = np.append(floors.displacement[int(np.argmax(floors.heights))], float(floors.heights.max()))
+        self.top = np.append(
+            floors.displacement[int(np.argmax(floors.heights))], float(p.turning_heights(floors.heights.max()))
+        )
 
     def start(self) -> _Point:
         """Return the state at rest."""
@@ -406,7 +408,7 @@ def _result(
         rotation=moved[:, n],
         lateral_force=np.array([point.force for point in points]),
         base_shear=shear,
-        base_moment=restoring @ (p.effective_mass * p.effective_height),
+        base_moment=restoring @ (p.effective_mass * p.moment_heights),
         story_drift=np.diff(u, axis=1, prepend=0.0),
         story_shear=np.cumsum(forces[:, ::-1], axis=1)[:, ::-1],
         element_force=tensions[:, :count],

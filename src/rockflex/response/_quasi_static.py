@@ -48,6 +48,7 @@ def static_path(
     rotation, heave = np.array([(state.rotation, state.heave) for state in states]).T
     loaded = np.array([state.pressed & ~state.empty for state in states])
     depth = heave[:, None] - springs.positions * rotation[:, None]
+    crushed, strength = np.array([state.crushed for state in states]), spring_strength(springs)
     return MomentRotationOnSprings(
         properties=properties,
         rotation=rotation + 0.0,  # no -0.0
@@ -57,7 +58,7 @@ def static_path(
         ),
         springs=springs,
         heave=heave,
-        spring_force=np.where(loaded, np.maximum(-springs.stiffness * depth, 0.0), 0.0),
+        spring_force=np.where(loaded, np.clip(-springs.stiffness * (depth + crushed), 0.0, strength), 0.0),
     )
 
 
@@ -265,6 +266,8 @@ class StaticEquilibrium:
         Where the elements are.
     carried
         Force in N that each element still carries while it breaks, shape (E,).
+    full, crushed
+        Which springs carry their capacity, and the permanent settlement of each in m, shape (S,).
     """
 
     rotation: float
@@ -273,6 +276,13 @@ class StaticEquilibrium:
     empty: Bools
     places: tuple[StaticElementState, ...]
     carried: Array
+    full: Bools
+    crushed: Array
+
+
+def spring_strength(springs: Springs) -> Array:
+    """Return the largest force of each spring in N, infinite where it does not yield."""
+    return np.full(springs.n, np.inf) if springs.capacity is None else springs.capacity
 
 
 def _static_path_on_springs(base: SprungBase, rotations: Array) -> Iterator[tuple[StaticEquilibrium, bool]]:
@@ -280,7 +290,8 @@ def _static_path_on_springs(base: SprungBase, rotations: Array) -> Iterator[tupl
     rotation, heave = base.rest
     pressed = heave - base.springs.positions * rotation < 0.0
     places = tuple(element_at_start_of_path(each) for each in base.elements)
-    state = StaticEquilibrium(rotation, heave, pressed, np.zeros_like(pressed), places, np.zeros(len(places)))
+    none, still = np.zeros_like(pressed), np.zeros(base.springs.n)
+    state = StaticEquilibrium(rotation, heave, pressed, none, places, np.zeros(len(places)), none, still)
     starts = bool(rotations[0] == rotation)
     yield state, starts
     for target in rotations[int(starts) :].tolist():
@@ -331,10 +342,12 @@ def _next_equilibrium(
         for way in (1, -1)
     )
     taken = np.where(state.pressed & ~state.empty, springs.stiffness, 0.0)
-    met = np.where(state.pressed | state.empty, springs.stiffness, 0.0)
+    met = np.where((state.pressed | state.empty) & ~state.full, springs.stiffness, 0.0)
     rise = _rise(positions * turn, np.append(taken, up), np.append(met, down), lift)
     rates = rise - positions * turn
     pressed = np.where(state.empty, rates[: springs.n] < 0.0, state.pressed)
+    falls = rates[: springs.n] < 0.0
+    yields, presses = state.full & falls, pressed & falls
     places = [ways[-1 if rate < 0.0 else 1] for ways, rate in zip(onward, rates[springs.n :], strict=True)]
     stops = [
         next_branch_change(each, place, int(np.sign(rate)))
@@ -342,9 +355,12 @@ def _next_equilibrium(
     ]
     depth = state.heave - springs.positions * state.rotation
     left = [stop[0] - place.elongation if stop else 0.0 for stop, place in zip(stops, places, strict=True)]
-    ends = np.array([*(pressed == (rates[: springs.n] > 0.0)), *(stop is not None for stop in stops)])
+    strength = spring_strength(springs)
+    reaches = presses & ~yields & np.isfinite(strength)
+    level = -state.crushed - np.where(reaches, strength / springs.stiffness, 0.0)
+    ends = np.array([*((pressed == (rates[: springs.n] > 0.0)) | reaches), *(stop is not None for stop in stops)])
     ahead = np.full(positions.size, np.inf)
-    np.divide(np.append(-depth, left), rates, out=ahead, where=ends & (rates != 0.0))
+    np.divide(np.append(level - depth, left), rates, out=ahead, where=ends & (rates != 0.0))
     np.maximum(ahead, 0.0, out=ahead)
     near = TOLERANCE * length
     ahead[ahead >= length - near] = np.inf  # it belongs to the next part of the path
@@ -359,8 +375,11 @@ def _next_equilibrium(
             force = static_tension(each, places[k])
             places[k] = next_branch(each, places[k]._replace(elongation=stop[0]), stop[1])
             carried[k] = force if each.broken(stop[1]) else 0.0
-    empty = happens[: springs.n] | (state.empty & (path <= near))
-    return StaticEquilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
+    met_end, at_once = happens[: springs.n], path <= near
+    empty = (met_end & ~reaches) | (state.empty & at_once)
+    full = yields | (met_end & reaches) | (state.full & at_once)
+    crushed = state.crushed - np.where(yields, rates[: springs.n] * path, 0.0)
+    return StaticEquilibrium(rotation, heave, pressed, empty, tuple(places), carried, full, crushed), path
 
 
 def _onward(element: Element, place: StaticElementState, way: int) -> StaticElementState:

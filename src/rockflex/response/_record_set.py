@@ -34,7 +34,7 @@ MEDIAN_FACTOR = 1.2  # on the median, where one record may overturn; not checked
 
 @dataclass(frozen=True)
 class DesignRule:
-    """What a code makes of the demands of several records."""
+    """How a code takes one value from the demands of several records."""
 
     source: str
     least: int  # records

@@ -20,50 +20,32 @@ from rockflex.response._peaks import (
     GLOBAL,
     ROTATIONS,
     TrackedPeaks,
-    balance_ratio,
-    element_extremes,
-    element_peaks,
-    largest_edge_moves,
+    column_pull,
     largest_rotations,
     leaning_push,
     may_fall,
+    peak_numbers,
 )
 from rockflex.response._response import PEAKS, Response
 
 
 def response_of_solution(model: RockingModel, motion: str, solution: Solution, tracked: TrackedPeaks) -> Response:
     """Return the response of a model from the solution of a run, and what this tracked."""
-    p, final = model.properties, solution.final_state
+    p, final, known = model.properties, solution.final_state, peak_numbers(model, solution, tracked)
     peaks, times = tracked.of(solution), tracked.peaks.named(solution.peak_times)
-    rotation, (right, left) = float(peaks["rotation"]), largest_rotations(peaks)
-    uplift, settlement = largest_edge_moves(model, peaks)
+    rotation, (right, left) = known["max_rotation"], largest_rotations(peaks)
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
     left_ground = left_ground or model.stayed_uplifted(rotation, final)
     status = "rocking" if left_ground else "no_uplift"
-    known = {f"max_{name}": float(peaks[name]) for name in GLOBAL}
-    known |= {f"time_of_max_{name}": float(times[name]) for name in GLOBAL}
+    known |= {f"time_of_max_{name}": float(times[name]) for name in ("rotation", *GLOBAL)}
     if p.top_height is None:
-        known["max_total_top_displacement"] = known["time_of_max_total_top_displacement"] = math.nan
-    least = p.resting_reaction - solution.lost_support  # springs cannot pull: in flight only rounding would say so
+        known["time_of_max_total_top_displacement"] = math.nan
     return Response(
         model=model.label,
         motion=motion,
         status="overturned" if solution.overturned else status,
-        max_rotation=rotation,
-        time_of_max_rotation=float(times["rotation"]),
         **known,
-        min_vertical_reaction=least if model.springs is None else max(least, 0.0),
         time_of_min_vertical_reaction=solution.time_of_lost_support,
-        **element_peaks(model, element_extremes(model, peaks), final)._asdict(),
-        residual_rotation=math.nan
-        if solution.overturned
-        else float(final[model.layout.rotation]) - model.rest.rotation,
-        balance_ratio=float(balance_ratio(model, right, left)),
-        max_slip=float(peaks.get("slip", 0.0)),
-        residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
-        max_edge_uplift=uplift,
-        max_edge_settlement=settlement,
-        leaning_push=float(leaning_push(p, rotation, known["max_base_shear"])),
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         guarded_impacts=solution.n_guarded / max(solution.n_impacts, 1),
@@ -196,9 +178,15 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs"), nothing),
+        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
+        "column_pull": np.array(
+            [
+                column_pull(each.properties, float(moment))
+                for each, moment in zip(models, peaks["base_moment"], strict=True)
+            ]
+        ),
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
         "guarded_impacts": solutions.guarded_impacts,

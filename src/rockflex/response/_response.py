@@ -26,6 +26,7 @@ from rockflex.response._history import History, SampledHistory
 from rockflex.response._outputs import OUTPUTS, outputs_as_docstring
 from rockflex.response._peaks import ELEMENT_PEAKS
 from rockflex.response._response_file import load_response, save_response
+from rockflex.response._sensitivity import Sensitivity
 
 FALLEN = 1.57  # rad: an overturned run has a status of its own
 NEGLIGIBLE = 0.05  # of the base shear, the push of leaning columns that needs no word
@@ -70,6 +71,14 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 "which is neglected: V_b, drifts and floor accelerations are off by about as much. Use a model with "
                 "P-Δ of the floors, or give these columns less weight.",
                 percent=100.0 * peaks["leaning_push"],
+            )
+        )
+    if peaks["column_pull"] > 1.0:
+        found.append(
+            translated(
+                "The base moment of the building reaches {ratio:.3g} times that which pulls an outer column of the "
+                "podium up: the column would lift off, and the building turn. What follows is to be read with care.",
+                ratio=peaks["column_pull"],
             )
         )
     if peaks["may_fall"]:
@@ -201,7 +210,7 @@ class Response(HtmlTable, Value):
     `element_elongation`, `element_energy`, `element_state`, `slip`, `slip_velocity`, `heave`, `edge_uplift`,
     `spring_force`, `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`,
+    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `sensitivity`, `to_frame()`, `to_xarray()`,
     `to_matlab()`, `to_netcdf()`, `at()`, `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`;
     see `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
     `InputError`.
@@ -279,11 +288,15 @@ class Response(HtmlTable, Value):
     tendon_overload: bool
     residual_rotation: float
     balance_ratio: float
+    max_joint_rotation: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float
     max_edge_settlement: float
+    settlement: float
+    max_permanent_settlement: float
     leaning_push: float
+    column_pull: float
     n_uplifts: int
     n_impacts: int
     guarded_impacts: float
@@ -325,6 +338,8 @@ class Response(HtmlTable, Value):
     element_elongation = _OfHistory[Array]()
     element_energy = _OfHistory[Array]()
     element_state = _OfHistory[Array]()
+    joint_rotation = _OfHistory[Array]()
+    permanent_settlement = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
     heave = _OfHistory[Array]()
@@ -342,6 +357,7 @@ class Response(HtmlTable, Value):
     required_friction_excluding_impacts = _OfHistory[Callable[..., float]]()
     sliding_time = _OfHistory[Callable[..., float | None]]()
     energy = _OfHistory[EnergyLedger]()
+    sensitivity = _OfHistory[Sensitivity]()
     to_frame = _OfHistory[Callable[..., Any]]()
     to_xarray = _OfHistory[Callable[..., Any]]()
     to_matlab = _OfHistory[Callable[..., Path]]()

@@ -21,6 +21,7 @@ from rockflex.models._impact import (
     Restitution,
     UnsavedLaw,
 )
+from rockflex.models._jointed_model import model_on_rigid_ground
 from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
@@ -36,7 +37,9 @@ from rockflex.structure._attachment import YieldingStory, element_parameters
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._elements import ELEMENTS
 from rockflex.structure._ground import Springs
+from rockflex.structure._joint import JointAbove
 from rockflex.structure._law_bars import BARS
+from rockflex.structure._pivot import OnColumns
 from rockflex.structure._rocking import RockingProperties
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
@@ -56,9 +59,17 @@ PROPERTIES = (
     "translational_inertia",
 )
 KNOWN = ("top_height", "base_mass", "eccentricity", "leaning_mass", "restitution", "opens")
-LATER: dict[str, Any] = {"guarded_impacts": 0.0, "may_fall": False, "leaning_push": 0.0}  # what older files do not have
+LATER: dict[str, Any] = {
+    "guarded_impacts": 0.0,
+    "may_fall": False,
+    "leaning_push": 0.0,
+    "max_joint_rotation": 0.0,
+    "column_pull": 0.0,
+    "settlement": 0.0,
+    "max_permanent_settlement": 0.0,
+}  # what older files do not have
 SAVED_LAWS: dict[str, Callable[..., ImpactLaw]] = {**LAW_CLASSES, "UnsavedLaw": UnsavedLaw}
-SPRINGS = ("positions", "stiffness", "damping", "area")
+SPRINGS = ("positions", "stiffness", "damping", "area", "capacity")
 FLOOR_MODES = ("heights", "displacement", "force")
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
@@ -98,6 +109,11 @@ def save_response(
             else:
                 scalars[name] = value
         scalars["stories"] = [asdict(each) for each in model.properties.stories]
+        scalars["joints"] = [
+            {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in asdict(each).items()}
+            for each in model.properties.joints
+        ]
+        scalars["columns"] = None if model.properties.columns is None else asdict(model.properties.columns)
         scalars["elements"] = [
             {"kind": type(each).__name__, **element_parameters(each)} for each in model.properties.elements
         ]
@@ -208,6 +224,9 @@ def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> Rocking
     elements = [_element_from_file(**each) for each in _typed(scalars, "elements", list)]
     known = {name: scalars[name] for name in KNOWN if name in scalars}
     known["stories"] = [YieldingStory(**each) for each in scalars["stories"]]
+    known["joints"] = [JointAbove(**each) for each in scalars.get("joints", [])]
+    if scalars.get("columns") is not None:
+        known["columns"] = OnColumns(**scalars["columns"])
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
@@ -236,4 +255,4 @@ def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> Rocking
     known = scalars["model"], properties, lifts, law, missing, gravity
     if "friction" in scalars:
         return SlidingModel(*known, friction=_typed(scalars, "friction", float), **nonlinear)
-    return RockingModel(*known, **nonlinear)
+    return model_on_rigid_ground(*known, **nonlinear)

@@ -85,18 +85,21 @@ def history_columns(history: History, more: Iterable[str] = ()) -> dict[str, Arr
 def ground_columns(history: History) -> dict[str, Array]:
     """Return what a history has beyond that of a base that stands on rigid ground, each of shape (n_states,).
 
-    The vertical acceleration of the ground if there is any, the slip if the base can slide, and on springs the heave,
-    the rise of the edges and the force of every spring.
+    The vertical acceleration of the ground if there is any, the rotation of every joint above the base, the slip if the
+    base can slide, and on springs the heave, the rise of the edges and the force of every spring.
     """
     columns: dict[str, Array] = {}
     if history.vertical_ground_acceleration.any():
         columns["vertical_ground_acceleration"] = history.vertical_ground_acceleration
+    columns |= {f"joint_rotation_{k}": each for k, each in enumerate(history.joint_rotation.T, 1)}
     if history.model.layout.slip >= 0:
         columns |= {"slip": history.slip, "slip_velocity": history.slip_velocity}
     if history.model.springs is not None:
         left, right = history.edge_uplift.T
         columns |= {"heave": history.heave, "left_edge_uplift": left, "right_edge_uplift": right}
         columns |= {f"spring_force_{k}": force for k, force in enumerate(history.spring_force.T, 1)}
+        settled = history.permanent_settlement
+        columns |= {f"permanent_settlement_{k}": each for k, each in enumerate(settled.T, 1) if settled.any()}
     return columns
 
 

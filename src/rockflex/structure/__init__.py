@@ -6,18 +6,22 @@ from rockflex.structure._attachment import Attachment
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes
 from rockflex.structure._beam_sections import LumpedMasses
+from rockflex.structure._beds import asce41_bed, gazetas_bed, winkler_bed
 from rockflex.structure._cross_section import Section
 from rockflex.structure._devices import STEELS, STRANDS, Steel, Strand, bar_fuse, strand_tendon, u_plate_fuse
 from rockflex.structure._element_law import Branch, BranchEnd, ElementLaw
 from rockflex.structure._elements import FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
-from rockflex.structure._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.structure._ground import Ground, Springs
+from rockflex.structure._joint import Joint
+from rockflex.structure._jointed import Jointed
 from rockflex.structure._law_bars import FlagShapedBar, GapBar, MultilinearBar
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
 from rockflex.structure._participation import rocking_properties
 from rockflex.structure._pivot import Pivot
+from rockflex.structure._podium import Podium
 from rockflex.structure._rigid_bodies import rigid_block, rocking_frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
@@ -45,6 +49,8 @@ __all__ = [
     "FrictionDamper",
     "GapBar",
     "Ground",
+    "Joint",
+    "Jointed",
     "Leaning",
     "LumpedMasses",
     "LumpedStructure",
@@ -54,6 +60,7 @@ __all__ = [
     "OneSided",
     "PinnedBeam",
     "Pivot",
+    "Podium",
     "Restrained",
     "RitzShapes",
     "RockingProperties",

@@ -53,7 +53,7 @@ TieHeight = Annotated[
 @described
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Attachment:
-    """What an element connects if it is not between base and ground.
+    """The two ends of an element that is not between base and ground.
 
     The elongation δ of an attached element is horizontal and counts from the structure at rest. Between floors i and j
     it is δ = c (u_j - u_i), with the displacements u of the floors relative to the rotated base; a rotation of the base

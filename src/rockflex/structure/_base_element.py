@@ -1,4 +1,4 @@
-"""What an element between a base and the ground answers of itself."""
+"""The questions that an element between a base and the ground answers."""
 
 import math
 import re
@@ -24,13 +24,13 @@ class BaseElement(Attachment, ABC):
 
     @property
     def words(self) -> str:
-        """What it is called in a sentence: "viscous damper"; the name of the class, if that has no title."""
+        """Its name in a sentence: "viscous damper"; the name of the class, if that has no title."""
         name = type(self).__name__
         return (self.title or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name)).lower()
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not yield, and of one that did."""
+        """The words of a report for one that did not yield, and for one that did."""
         return "", translated("yielded")
 
     @abstractmethod

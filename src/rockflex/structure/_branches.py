@@ -11,7 +11,7 @@ from rockflex.foundation.arrays import Array
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
-BARELY = 1e-12  # m: a tie without initial force goes slack beyond this, so that it does not do so in full contact
+BARELY = 1e-12  # m: what is without force at rest is this far from slack, so that rounding in contact does not matter
 BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 
@@ -127,7 +127,7 @@ class Element(Protocol):
 
 
 class ElementDefaults:
-    """What most elements have in common."""
+    """The answers that most elements share."""
 
     @property
     def stretches(self) -> float | None:
@@ -159,7 +159,7 @@ class ElementDefaults:
 
 
 class WithoutMemory(ElementDefaults):
-    """What is common to elements without an internal variable, most of which have one branch."""
+    """The answers of elements without an internal variable, most of which have one branch."""
 
     @property
     def n_internal(self) -> int:
@@ -383,7 +383,7 @@ class YieldingStoryElement(YieldingElement):
         return whole._replace(stiffness=whole.stiffness - self.stiffness)
 
     def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
-        """What the whole story stores, less ½ k δ²."""
+        """The energy that the whole story stores, less ½ k δ²."""
         elastic = self.stiffness * elongation
         return super().stored_energy(elongation, force + elastic, plastic) - 0.5 * elastic * elongation
 

@@ -11,7 +11,14 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.shown import shown
 from rockflex.structure._attachment import Position
 from rockflex.structure._base_element import BaseElement
-from rockflex.structure._branches import ElasticElement, Element, FrictionElement, ViscousElement, YieldingElement
+from rockflex.structure._branches import (
+    BARELY,
+    ElasticElement,
+    Element,
+    FrictionElement,
+    ViscousElement,
+    YieldingElement,
+)
 
 _RATIO_REMEDY = "It is the stiffness after yielding over the elastic stiffness: 2 % is 0.02."
 PostYieldRatio = Annotated[
@@ -27,9 +34,6 @@ TendonYieldRatio = Annotated[
         note="A tendon that yields keeps its plastic stretch, loses prestress and becomes slack at zero force.",
     ),
 ]
-
-
-HAIR = 1e-14  # m: a tendon without prestress is this far from slack, so that rounding at rest does not make it so
 
 
 @described
@@ -112,14 +116,14 @@ class Tendon(BaseElement):
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not yield, and of one that did."""
+        """The words of a report for one that did not yield, and for one that did."""
         return translated("elastic"), translated("beyond F_y" if self.post_yield_ratio is None else "yielded")
 
     def branched(self) -> Element:
         """Return it as its branches: elastic, slack, and those of a bar that yields or breaks."""
         if not self.dissipates:
             return ElasticElement(self.stiffness, self.initial_force, self.place)
-        stretched = max(self.initial_force / self.stiffness, HAIR)
+        stretched = max(self.initial_force / self.stiffness, BARELY)
         limit, ratio = self.yield_force, self.post_yield_ratio
         if limit is None or ratio is None:  # it snaps before any force at which it would yield
             limit, ratio = 2.0 * self.stiffness * (stretched + self.breaks_at), 0.0
@@ -243,7 +247,7 @@ class YieldingDissipator(BaseElement):
     (True, 5.89)
     """
 
-    title: ClassVar[str] = "Yielding dissipator"
+    title: ClassVar[str] = "Fuse"
     symbol: ClassVar[str] = "fuse"
     fuse: ClassVar[bool] = True
 
@@ -276,12 +280,12 @@ class YieldingDissipator(BaseElement):
 
     @property
     def words(self) -> str:
-        """What it is called in a sentence."""
+        """Its name in a sentence."""
         return "fuse"
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not yield, and of one that did."""
+        """The words of a report for one that did not yield, and for one that did."""
         return translated("elastic"), translated("yielded")
 
     def branched(self) -> Element:
@@ -427,7 +431,7 @@ class FrictionDamper(BaseElement):
 
     @property
     def yield_words(self) -> tuple[str, str]:
-        """What a report says of one that did not slide, and of one that did."""
+        """The words of a report for one that did not slide, and for one that did."""
         return translated("did not slide"), translated("slid")
 
     def branched(self) -> Element:

@@ -19,6 +19,7 @@ GROUND, UPRIGHT, BODY = 0.0, 1.0, 2.0
 
 MAX_HEIGHTS = 40  # heights of a structure that are drawn, besides the base
 _MAX_THICK_FLOORS = 25
+_MAX_COLUMNS = 12  # columns of a podium that are drawn
 _HTML_HEIGHT, _HTML_WIDTH, _HTML_EDGE = 170.0, 260.0, 8.0  # pixels of the drawing in a notebook
 _COLUMN, _LEANING, _BRACE = 0.82, 1.8, 0.6  # x over the distance from the axis to the nearer edge
 _MASS, _BRACKET, _MAX_BRACKET, _TENDON, _SUNK = 0.06, 0.16, 0.4, 0.6, 0.02  # lengths over the height
@@ -48,6 +49,15 @@ A spring is 1 wide to either side. The others are named after their colours on t
 """
 
 ELEMENT_COLORS = {"tendons": "#b5558a", "fuse": "#6b7a00", "damper": "#0f7f8c", "friction": "#7d5a30", "law": "#5b4b8a"}
+DARK_ELEMENT_COLORS = {
+    "tendons": "#de9cc4",
+    "fuse": "#b9c94a",
+    "damper": "#4cc3cf",
+    "friction": "#d0a875",
+    "law": "#b3a4ee",
+}
+"""Colours of the symbols on a light and on a dark background, in figures and on the page."""
+
 Masses: TypeAlias = tuple[tuple[float, float], ...]
 """Heights in m and masses in kg, from the bottom to the top."""
 
@@ -62,6 +72,11 @@ class DrawnStructure:
     def concentrated_masses(self) -> Masses:
         """Return the masses that it carries at single heights, without the base and what leans."""
         return ()
+
+    def half_widths(self, heights: Array) -> Array | None:
+        """Return half of its width in m at some heights above the base; None if it is drawn as a line."""
+        del heights
+        return None
 
     def _repr_html_(self) -> str:
         return _structure_html(self)
@@ -108,6 +123,10 @@ class StructureOutline:
     masses
         Height in m and mass in kg of what is concentrated on the structure, without the base and what leans; none where
         the mass is distributed or not known.
+    joints
+        Heights of the joints above the base.
+    turning
+        Height in m up to which points move by a unit of θ as far as they are high; others move as far as this one.
     """
 
     kind: Kind
@@ -118,6 +137,19 @@ class StructureOutline:
     strokes: tuple[Stroke, ...]
     elements: tuple[tuple[str, Array], ...]
     masses: Masses = ()
+    joints: tuple[float, ...] = ()
+    turning: float = math.inf
+
+    def sway(self, displacement: Array, joint_rotation: Array) -> Array:
+        """Return how far the points at `heights` move relative to the turned base in m, shape (k, m).
+
+        By the displacements of the modes in m, (k, n), and the rotations of the joints above the base in rad, (k, J).
+        """
+        levers = np.maximum(self.heights[:, None] - np.array(self.joints), 0.0)
+        return (
+            displacement @ self.shapes[:, : displacement.shape[1]].T
+            + joint_rotation @ levers.T[: joint_rotation.shape[1]]
+        )
 
     @property
     def top(self) -> float:
@@ -147,13 +179,58 @@ def structure_outline(p: RockingProperties, structure: Any | RockingProperties |
     else:
         kind = "column"
     heights, shapes = _heights_and_shapes(p, modes)
+    if p.columns is not None:
+        return _podium_outline(p, structure, kind, heights, shapes)
     left, right = -p.pivot(-1).arm, p.pivot(1).arm
     top, base = heights[-1], _stroke([left, right], 0.0, 5.0)
     behind = [_stroke(left if side > 0 else right, [0.0, top], 8.0, GROUND) for side in p.sides if len(p.sides) == 1]
-    strokes = (*behind, *_body_strokes(kind, heights, left, right, leaning=p.leaning_mass > 0.0), base)
+    inner = innermost_structure(structure)
+    wide = inner.half_widths(heights) if isinstance(inner, DrawnStructure) and kind != "block" else None
+    gaps = [_stroke([-each.half_width, each.half_width], each.height, 4.0) for each in p.joints]
+    body = _body_strokes(kind, heights, left, right, wide, leaning=p.leaning_mass > 0.0)
+    strokes = (*behind, *body, *gaps, base)
     ends = [np.array(_element_ends(each, p, top, left, right)) for each in p.elements]
     held = tuple((each.symbol, end) for each, end in zip(p.elements, ends, strict=True))
-    return StructureOutline(kind, heights, shapes, left, right, strokes, held, _concentrated_masses(kind, p, structure))
+    masses, joints = _concentrated_masses(kind, p, structure), tuple(each.height for each in p.joints)
+    return StructureOutline(kind, heights, shapes, left, right, strokes, held, masses, joints)
+
+
+def _podium_outline(
+    p: RockingProperties, structure: Any, kind: Kind, heights: Array, shapes: Array
+) -> StructureOutline:
+    """Return the outline of a building on columns, which stands on their heads and does not turn with them."""
+    assert p.columns is not None
+    height, given = p.columns.height, structure
+    while hasattr(given, "structure") and not hasattr(given, "n_columns"):
+        given = given.structure
+    number, width = min(getattr(given, "n_columns", 2), _MAX_COLUMNS), getattr(given, "column_width", p.half_width)
+    spread = getattr(given, "column_spacing", None) or max(3.0 * width, 0.6 * float(heights[-1]) / max(number - 1, 1))
+    places = (spread * (np.arange(number) - 0.5 * (number - 1))).tolist()
+    edge, how = places[-1] + 0.5 * width, np.array([GROUND, GROUND, UPRIGHT, UPRIGHT, GROUND])
+    around, up = np.array([-0.5, 0.5, 0.5, -0.5, -0.5]) * width, np.array([0.0, 0.0, height, height, 0.0])
+    columns = [_stroke(x + around, up, 1.6, how, filled=True) for x in places]
+    body = [
+        _stroke(each.points[:, 0], each.points[:, 1] + height, each.width, UPRIGHT, filled=each.filled)
+        for each in _body_strokes(kind, heights, -edge, edge, None, leaning=False)
+    ]
+    lifted = np.array([0.0, height, UPRIGHT - BODY])
+    held = tuple(
+        (each.symbol, np.array(_element_ends(each, p, heights[-1], -edge, edge)) + lifted) for each in p.elements
+    )
+    masses = tuple((z + height, mass) for z, mass in _concentrated_masses(kind, p, structure))
+    slab = _stroke([-edge, edge], height, 5.0, UPRIGHT)
+    still = np.zeros((1, shapes.shape[1]))
+    return StructureOutline(
+        kind,
+        np.array([0.0, *(heights + height)]),
+        np.vstack((still, shapes)),
+        -edge,
+        edge,
+        (*columns, *body, slab),
+        held,
+        masses,
+        turning=height,
+    )
 
 
 def _concentrated_masses(kind: Kind, p: RockingProperties, structure: Any) -> Masses:
@@ -185,11 +262,16 @@ def _stroke(x: Any, z: Any, width: float, how: Any = BODY, *, filled: bool = Fal
     return Stroke(np.column_stack(np.broadcast_arrays(x, z, how)), width, filled)
 
 
-def _body_strokes(kind: Kind, heights: Array, left: float, right: float, *, leaning: bool) -> list[Stroke]:
+def _body_strokes(
+    kind: Kind, heights: Array, left: float, right: float, wide: Array | None, *, leaning: bool
+) -> list[Stroke]:
     """Return the lines above the base; a column beside a frame on a hinge, which its floors hold, if some lean."""
     near, top = min(-left, right), heights[-1]
     if kind == "block":
         return [_stroke([left, right, right, left, left], [0.0, 0.0, top, top, 0.0], 2.0, filled=True)]
+    if wide is not None:
+        around = np.concatenate([heights, heights[::-1], heights[:1]])
+        return [_stroke(np.concatenate([-wide, wide[::-1], -wide[:1]]), around, 2.0, filled=True)]
     if kind != "frame":
         mass = [_stroke([-_MASS * top, _MASS * top], top, 12.0)] if kind == "mast" else []
         return [_stroke(0.0, heights, 5.0), *mass]

@@ -17,6 +17,22 @@ _OVERTURNING_SHARE = 0.7
 
 
 @dataclass(frozen=True)
+class OnColumns:
+    """The columns on which a structure stands, which rock together; see `Podium`.
+
+    Attributes
+    ----------
+    height : float
+        Height in m of a column: a rotation moves all floors by this times θ.
+    pull_moment : float
+        Base moment in N m of what stands on them that first pulls an outer column; infinite if it is not known.
+    """
+
+    height: float
+    pull_moment: float = math.inf
+
+
+@dataclass(frozen=True)
 class Pivot:
     """The properties of a rocking structure about one edge of its base; see `RockingProperties.pivot`.
 

@@ -1,7 +1,7 @@
 """Rigid bodies that rock: a block, and a frame of columns under a rigid cap."""
 
 import math
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from rockflex.foundation.checks import checked_whole_number, real_or_nan
 from rockflex.foundation.descriptions import Described, described
@@ -141,23 +141,60 @@ def rocking_frame(
     (0.9493, 1.635)
     """
     n = checked_whole_number("n_columns", n_columns, 1, 10_000)
-    b, h, columns = 0.5 * column_width, 0.5 * column_height, n * column_mass
-    r2, ratio = b**2 + h**2, cap_mass / columns
-    squat = (b**2) / r2  # sin² α
-    kept = (1.0 - 1.5 * squat + 3.0 * ratio * (1.0 - 2.0 * squat)) / (1.0 + 3.0 * ratio)
-    if kept < 0.0:
+    body = body_on_columns(n, column_width, column_height, column_mass, cap_mass)
+    return _body_without_modes(body.i_theta, body.l0r, body.m_tot, body.half_width, column_height, body.restitution)
+
+
+class BodyOnColumns(NamedTuple):
+    """Columns under a slab and a building as one body that rocks, with the names of `RockingProperties`."""
+
+    i_theta: float
+    l0r: float
+    m_tot: float
+    half_width: float
+    restitution: float
+
+
+def body_on_columns(
+    n_columns: int, width: float, height: float, column_mass: float, slab_mass: float, building_mass: float = 0.0
+) -> BodyOnColumns:
+    """Return the body of columns that rock together under a slab, on which a building may stand.
+
+    The restitution is from the momentum about the new pivots; floors of the building are free sideways, so only what
+    they rise takes part. Without a building it is that of Makris & Vassiliou (2013).
+
+    Raises
+    ------
+    InputError
+        If the columns are so squat that it would be negative.
+    """
+    b, h, columns = 0.5 * width, 0.5 * height, n_columns * column_mass
+    r2, carried = b**2 + h**2, slab_mass + building_mass
+    rolls = columns * (r2 / 3.0 + h**2 - b**2) + 4.0 * slab_mass * (h**2 - b**2) - 4.0 * b**2 * building_mass
+    stands = 4.0 / 3.0 * columns * r2 + 4.0 * slab_mass * r2 + 4.0 * b**2 * building_mass
+    if rolls < 0.0:
         raise InputError(
-            f"column_width must leave some rotation after an impact, but with {column_width:g} m and column_height = "
-            f"{column_height:g} m the restitution would be {kept:.4g}. Columns that rock are slender.",
+            f"column_width must leave some rotation after an impact, but with {width:g} m and column_height = "
+            f"{height:g} m the restitution would be {rolls / stands:.4g}. Columns that rock are slender.",
             field="column_width",
         )
-    mass, moment = columns + cap_mass, columns * h + 2.0 * cap_mass * h
-    inertia, arm = (4.0 / 3.0 * columns + 4.0 * cap_mass) * r2, b * (columns + 2.0 * cap_mass) / mass
-    return _body_without_modes(inertia, moment, mass, arm, 2.0 * h, kept)
+    mass = columns + carried
+    return BodyOnColumns(
+        i_theta=4.0 / 3.0 * columns * r2 + 4.0 * carried * r2,
+        l0r=columns * h + 2.0 * carried * h,
+        m_tot=mass,
+        half_width=b * (columns + 2.0 * carried) / mass,
+        restitution=rolls / stands,
+    )
 
 
 def _body_without_modes(
-    i_theta: float, l0r: float, mass: float, half_width: float, top: float, restitution: float | None = None
+    i_theta: float,
+    l0r: float,
+    mass: float,
+    half_width: float,
+    top: float,
+    restitution: float | None = None,
 ) -> RockingProperties:
     """Return a rigid body with its top at some height."""
     return RockingProperties(

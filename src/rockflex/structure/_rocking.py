@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
     checked_damping_ratios,
+    checked_instance,
+    checked_instances,
     checked_magnitude,
     checked_positive,
     checked_whole_number,
@@ -26,7 +28,8 @@ from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._elements import Tendon, are_elements_symmetric, base_element_tuple, tendons_among
-from rockflex.structure._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side
+from rockflex.structure._joint import JointAbove
+from rockflex.structure._pivot import PIVOT_VALUES, OnColumns, Pivot, build_both_pivots, checked_pivot_side
 from rockflex.structure._rocking_checks import (
     SUM_TOLERANCE,
     checked_base_mass,
@@ -224,6 +227,19 @@ class RockingProperties(HtmlTable, Value):
         ),
     ]
 
+    joints: Annotated[
+        tuple[JointAbove, ...],
+        Described("joints above the base at which it rocks, too", in_file=False, note="See `Jointed`."),
+    ]
+    columns: Annotated[
+        OnColumns | None,
+        Described(
+            "columns that rock under it",
+            in_file=False,
+            note="See `Podium`: a rotation then moves all floors alike, and `effective_height` is that of the columns.",
+        ),
+    ]
+
     def __init__(
         self,
         omega: ArrayLike,
@@ -245,6 +261,8 @@ class RockingProperties(HtmlTable, Value):
         stories: Iterable[YieldingStory] = (),
         restitution: float | None = None,
         opens: Literal["both", "right", "left"] = "both",
+        joints: Iterable[JointAbove] = (),
+        columns: OnColumns | None = None,
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = {"i_theta": i_theta, "l0r": l0r, "m_tot": m_tot, "half_width": half_width}
@@ -264,8 +282,10 @@ class RockingProperties(HtmlTable, Value):
             eccentricity=e,
             leaning_mass=leaning_mass,
             stories=checked_stories(stories, floors, modes["omega"].size),
-            restitution=checked_restitution(restitution, opens, modes["omega"].size),
+            restitution=checked_restitution(restitution, opens, modes["omega"].size, columns),
             opens=opens,
+            joints=checked_instances("joints", joints, JointAbove),
+            columns=None if columns is None else checked_instance("columns", columns, OnColumns),
         )
 
     def rocking(self, n_modes: SupportsIndex | None = None) -> "RockingProperties":
@@ -286,6 +306,18 @@ class RockingProperties(HtmlTable, Value):
     def weight_share(self) -> float:
         """Share of the weight that stands on the base, and so resists uplift; 1 without leaning mass."""
         return self.m_tot / self.horizontal_mass
+
+    @cached_property
+    def moment_heights(self) -> Array:
+        """Height in m at which the elastic force of each mode acts above what it stands on: h*_n, shape (n,)."""
+        if self.columns is None or self.floors is None:
+            return self.effective_height
+        return self.floors.heights @ self.floors.force / (self.effective_mass * self.omega**2)
+
+    def turning_heights(self, heights: ArrayLike) -> Array:
+        """Return how far a unit of θ moves points at some heights in m: as high as they are, but on columns."""
+        found = np.asarray(heights, dtype=float)
+        return found if self.columns is None else np.full(found.shape, self.columns.height)
 
     @property
     def mass_left_out(self) -> Array:
@@ -315,7 +347,8 @@ class RockingProperties(HtmlTable, Value):
     @cached_property
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
-        height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
+        of_mode = self.n_modes and self.columns is None
+        height = float(self.effective_height[0]) if of_mode else self.l0r / self.m_tot
         return build_both_pivots(self.elements, alike=self.symmetric, height=height, **values)
 
     @property
@@ -479,4 +512,5 @@ class RockingProperties(HtmlTable, Value):
             zeta=self.zeta[:k],
             floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
             stories=self.stories if k else (),
+            joints=tuple(each.truncated(k) for each in self.joints),
         )

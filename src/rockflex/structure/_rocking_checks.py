@@ -10,6 +10,7 @@ from rockflex.foundation.checks import (
     check_all_positive,
     checked_finite_vector,
     checked_instance,
+    checked_instances,
     is_one_of,
 )
 from rockflex.foundation.errors import InputError
@@ -18,7 +19,7 @@ from rockflex.foundation.shown import shown
 from rockflex.structure._analysis import FloorModes
 from rockflex.structure._attachment import Attachment, YieldingStory
 from rockflex.structure._base_element import BaseElement
-from rockflex.structure._pivot import pivot_inertia
+from rockflex.structure._pivot import OnColumns, pivot_inertia
 
 SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
 PRINTED_TOLERANCE = 1e-5  # of I_θ: tolerance for values printed to six digits
@@ -126,13 +127,9 @@ def check_floors_of(element: Attachment, floors: FloorModes | None, n_modes: int
 def checked_stories(
     given: Iterable[YieldingStory], floors: FloorModes | None, n_modes: int
 ) -> tuple[YieldingStory, ...]:
-    try:
-        stories = tuple(given) if n_modes else ()
-    except TypeError:
-        message = f"stories must be a sequence of YieldingStory objects, but {shown(given)} was given."
-        raise InputError(message, field="stories") from None
+    stories = checked_instances("stories", given, YieldingStory) if n_modes else ()
     for each in stories:
-        floor = checked_instance("stories", each, YieldingStory).floor
+        floor = each.floor
         if floors is None or floor > floors.heights.size:
             known = "none" if floors is None else f"{floors.heights.size}"
             raise InputError(
@@ -143,7 +140,7 @@ def checked_stories(
     return stories
 
 
-def checked_restitution(given: float | None, opens: str, n_modes: int) -> float | None:
+def checked_restitution(given: float | None, opens: str, n_modes: int, columns: OnColumns | None) -> float | None:
     if not is_one_of(opens, ("both", "right", "left")):
         raise InputError(f'opens must be "both", "right" or "left", but {shown(opens)} was given.', field="opens")
     if given is not None and given > 1.0:
@@ -152,7 +149,7 @@ def checked_restitution(given: float | None, opens: str, n_modes: int) -> float 
             "after and before an impact; more than 1 would gain energy.",
             field="restitution",
         )
-    if given is not None and n_modes and opens == "both":
+    if given is not None and n_modes and opens == "both" and columns is None:
         raise InputError(
             f"restitution is that of a rigid body, or of what opens to one side, but the structure has {n_modes} modes "
             "and opens to both. Give an impact law to the run: impact=Restitution(e).",

@@ -129,6 +129,13 @@ class TaperedTower(AssembledStructure, Value):
         """The cantilever of `beam`."""
         return self.beam
 
+    def half_widths(self, heights: Array) -> Array:
+        return _outer_radius(self.height, self.base_radius, self.top_radius, heights)
+
+
+def _outer_radius(height: float, base: float, top: float, z: Array) -> Array:
+    return base + (top - base) * z / height
+
 
 @dataclass(frozen=True)
 class _RingSection:
@@ -141,7 +148,7 @@ class _RingSection:
     factor: float
 
     def radii(self, z: Array) -> tuple[Array, Array]:
-        outer = self.base_radius + (self.top_radius - self.base_radius) * z / self.height
+        outer = _outer_radius(self.height, self.base_radius, self.top_radius, z)
         return outer, np.maximum(outer - self.wall, 0.0)
 
 

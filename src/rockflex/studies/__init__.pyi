@@ -1,5 +1,10 @@
 from ._arguments import InitialState as InitialState
 from ._compare import compare as compare
+from ._gradient import Gradient as Gradient
+from ._gradient import gradient as gradient
+from ._gradient import parameter_names as parameter_names
+from ._identify import Identification as Identification
+from ._identify import identify as identify
 from ._modal_combination import CombinedPeaks as CombinedPeaks
 from ._modal_combination import SecondMode as SecondMode
 from ._modal_combination import frequency_ratios as frequency_ratios
@@ -24,6 +29,8 @@ from ._spectra import rocking_spectrum as rocking_spectrum
 from ._study_kind import KINDS as KINDS
 from ._study_kind import StudyFindings as StudyFindings
 from ._study_kind import StudyKind as StudyKind
+from ._tornado import Tornado as Tornado
+from ._tornado import tornado as tornado
 from .case import Case as Case
 from .running import running as running
 from .spec import StructuresStudySpec as StructuresStudySpec

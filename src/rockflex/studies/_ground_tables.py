@@ -6,18 +6,18 @@ from typing import Annotated, Any, Literal, NoReturn, cast
 from rockflex.foundation.descriptions import PLAIN, WHOLE, Described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.schema import GroundSchema, SpringBedSchema
-from rockflex.structure._ground import (
+from rockflex.structure._beds import (
+    BEARING_CAPACITY,
     BED_DAMPING,
     END_RATIO,
     END_ZONE,
     NUMBER_OF_SPRINGS,
     SOIL_DENSITY,
-    Ground,
-    Springs,
     asce41_bed,
     gazetas_bed,
     winkler_bed,
 )
+from rockflex.structure._ground import Ground, Springs
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._arguments import ground_under_structure
@@ -42,6 +42,10 @@ class SpringsTable(TomlTable):
         Described("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
     ] = None
     heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
+    capacity: Annotated[
+        float | list[float] | None,
+        Described("the largest force of a spring, at which it yields, in N", "N", form=_EACH, low=1.0, high=1e15),
+    ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
         """Return the springs under a structure."""
@@ -50,6 +54,7 @@ class SpringsTable(TomlTable):
             edges if self.positions is None else self.positions,
             self.stiffness,
             0.0 if self.damping is None else self.damping,
+            capacity=self.capacity,
         )
         return _springs_with_heave_damping(springs, self, properties)
 
@@ -69,10 +74,12 @@ class SpringBedTable(SpringBedSchema, TomlTable):
         float | None,
         replace(SOIL_DENSITY, description=f"{SOIL_DENSITY.description}, with Gazetas"),
     ] = None
+    bearing_capacity: Annotated[float | None, BEARING_CAPACITY] = None
 
     def under(self, properties: RockingProperties) -> Springs:
         """Return the bed under a structure."""
         where: dict[str, Any] = {"n": self.n, "damping": self.damping or 0.0, "eccentricity": properties.eccentricity}
+        where["bearing_capacity"] = self.bearing_capacity
         zones = {"end_zone": self.end_zone, "end_ratio": self.end_ratio}
         ends: dict[str, Any] = {name: value for name, value in zones.items() if value is not None}
         if self.density is not None and self.method != "gazetas":
@@ -91,7 +98,7 @@ class SpringBedTable(SpringBedSchema, TomlTable):
                 _refuse_both("density", "the heave_damping_ratio")
             size = properties.half_width, self.breadth
             more: dict[str, Any] = {"end_zone": self.end_zone, "density": self.density}
-            more |= {"n": self.n, "eccentricity": properties.eccentricity}
+            more |= {"n": self.n, "eccentricity": properties.eccentricity, "bearing_capacity": self.bearing_capacity}
             bed = gazetas_bed(*size, self.shear_modulus, self.poisson_ratio, **more)
         elif self.shear_modulus is not None and self.poisson_ratio is not None:
             if ends:

@@ -59,8 +59,8 @@ def moment_rotation(
     the force N of each spring at x from the axis of the masses. Dashpots and friction under the base contribute
     nothing. The path begins at rest, settled; θ counts from the level base, as in a run.
 
-    The structure is rigid here, so that elements between its floors and stories that yield do not matter; `pushover`
-    has them.
+    The structure is rigid here, so that elements between its floors, stories that yield and joints above the base do
+    not matter; `pushover` has the former two.
 
     Parameters
     ----------
@@ -168,4 +168,4 @@ def _held_at_base(properties: RockingProperties) -> RockingProperties:
                 field="elements",
             )
     under = tuple(each for each in properties.elements if not each.attached)
-    return replace(properties, elements=under, stories=())
+    return replace(properties, elements=under, stories=(), joints=())

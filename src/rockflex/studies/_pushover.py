@@ -81,6 +81,12 @@ def pushover(
             f"{shown(pattern)} was given.",
             field="pattern",
         )
+    if lifts and properties.joints:
+        raise InputError(
+            "pushover has no joints above the base that open. Give lifts=False for the structure on a fixed base, or "
+            "the structure without its joints.",
+            field="structure",
+        )
     held = 1 not in properties.sides  # by a wall behind it
     model = Model(lifts=checked_instance("lifts", lifts, bool) and not held).of(properties)
     assert isinstance(model, RockingModel)

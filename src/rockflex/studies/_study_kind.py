@@ -1,4 +1,4 @@
-"""What a kind of study is, and the registry of all kinds.
+"""Kinds of studies, and the registry of all of them.
 
 The kinds of this package are named here and defined where their reports and figures are; others are entry points.
 """

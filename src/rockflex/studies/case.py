@@ -47,7 +47,7 @@ from rockflex.studies.running import checked_work_limit
 if TYPE_CHECKING:
     import pandas as pd
 
-_PARTS = ("leaning_masses", "stories", "eccentricity", "elements")  # of a structure that is a table
+_PARTS = ("leaning_masses", "stories", "podium", "joints", "eccentricity", "elements")  # of a structure that is a table
 
 
 def _initial_state(given: Any) -> Any:

@@ -51,7 +51,7 @@ def max_bisections_below_scales(tolerance: float) -> int:
 
 @dataclass
 class ScaleLadder:
-    """What happens to one structure under one record at rising scales.
+    """The runs of one structure under one record at rising scales.
 
     Overturning is not monotone: a structure may overturn at a scale and survive a larger one. Therefore all scales
     of the grid are run; bisection then narrows the first and the last boundary.

@@ -27,6 +27,7 @@ from rockflex.foundation.language import CATALOGUES, Language, use_language
 from rockflex.foundation.units import QUANTITIES, SystemName, UnitSystem
 from rockflex.report.run._report_files import found_browser
 from rockflex.response._outputs import HISTORY, OUTPUTS, Output
+from rockflex.structure._outline import DARK_ELEMENT_COLORS, ELEMENT_COLORS
 from rockflex.studies._compare import MAX_ALTERNATIVES
 from rockflex.web import _limits as limits
 from rockflex.web._alternatives import alternatives_view
@@ -44,6 +45,7 @@ from rockflex.web._record_sets import periods_view
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
+from rockflex.web._site import site_view
 from rockflex.web._slots import Slots, visitor_left, visitor_of
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
@@ -395,6 +397,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         Route("/api/selection", view(selection, server.selections), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/periods", view(lambda state, _: periods_view(state, uploads)), methods=["POST"]),
+        Route("/api/site", view(lambda state, _: site_view(state, uploads), server.selections), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
@@ -404,6 +407,7 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
         Route("/api/file/{what}", server.make, methods=["POST"]),
         Route("/api/file/{token}", server.making),
         Route("/api/file/{token}/content", server.made),
+        Route("/static/elements.css", _element_colors),
         Mount("/static", StaticFiles(directory=STATIC)),
         Mount("/languages", StaticFiles(directory=CATALOGUES)),
     ]
@@ -419,6 +423,15 @@ def create_page_application(host: str, names: Sequence[str], token: str = "") ->
 
 async def _page_html(_: Request) -> Response:
     return FileResponse(STATIC / "index.html")
+
+
+async def _element_colors(_: Request) -> Response:
+    themes = {":root": ELEMENT_COLORS, ':root[data-theme="dark"]': DARK_ELEMENT_COLORS}
+    rules = (
+        f"{theme} {{ {' '.join(f'--{name}: {color};' for name, color in colors.items())} }}\n"
+        for theme, colors in themes.items()
+    )
+    return Response("".join(rules), media_type="text/css")
 
 
 def _answer_about_page() -> dict[str, Any]:

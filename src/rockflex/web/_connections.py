@@ -1,4 +1,4 @@
-"""What connections may hold: a place only while they send, and memory only as far as there is room for all."""
+"""The limits of connections: a place only while they send, and memory only as far as there is room for all."""
 
 import asyncio
 from collections import Counter

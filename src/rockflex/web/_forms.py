@@ -3,6 +3,7 @@
 import math
 import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
@@ -57,12 +58,34 @@ PRESETS: list[dict[str, Any]] = [
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""
 
 
-OF_WHOLE = ("eccentricity", "one_sided", "leaning_masses", "stories")  # fields of every kind of structure
+MATERIALS: list[dict[str, Any]] = [
+    {"title": "concrete", "elastic_modulus": 3e10, "density": 2500.0},
+    {"title": "steel", "elastic_modulus": 2.1e11, "density": 7850.0},
+    {"title": "timber", "elastic_modulus": 1.1e10, "density": 450.0},
+    {"title": "masonry", "elastic_modulus": 5e9, "density": 1900.0},
+]
+"""Materials of sections to choose from: modulus in N/m² and density in kg/m³."""
+
+
+def material_name(given: Mapping[str, Any]) -> str:
+    """Return the name of the material that a table of these values has; empty if it is none of `MATERIALS`."""
+    values = ("elastic_modulus", "density")
+    return next((each["title"] for each in MATERIALS if all(given.get(name) == each[name] for name in values)), "")
+
+
+OF_WHOLE = (
+    "eccentricity",
+    "one_sided",
+    "leaning_masses",
+    "stories",
+    "podium",
+    "joints",
+)  # fields of every kind of structure
 FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
 }
-"""What the page begins with: a pier that rocks."""
+"""The structure of the first screen: a pier that rocks."""
 
 
 def forms_of_structures() -> dict[str, Any]:
@@ -79,6 +102,7 @@ def forms_of_structures() -> dict[str, Any]:
             "bouc_wen": _form_fields(BoucWenTable),
             "ground": _form_fields(GroundTable),
             "section_part": _form_fields(PartTable),
+            "materials": MATERIALS,
             "presets": PRESETS,
         }
     )

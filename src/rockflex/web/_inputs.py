@@ -1,4 +1,4 @@
-"""What the reports of the page were computed from, in words: the fields of the structure, and the records' target."""
+"""The inputs of the page's reports in words: the fields of the structure, and the records' target."""
 
 import math
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import rounded_number
 from rockflex.foundation.shown import shortened
 from rockflex.foundation.units import QUANTITIES, UnitSystem
-from rockflex.web._forms import forms_of_structures
+from rockflex.web._forms import forms_of_structures, material_name
 from rockflex.web._selection import SELECTED, target_spectrum_of_choice
 from rockflex.web._state import PageState
 from rockflex.web._structure import build_page_structure
@@ -35,7 +35,9 @@ def input_notes(state: PageState, *, of_set: bool = False) -> list[str]:
 
 
 def _field_texts(specs: list[dict[str, Any]], given: dict[str, Any], units: UnitSystem) -> Iterator[str]:
-    """Yield each field that is given as its label and its value."""
+    """Yield each field that is given as its label and its value, and before them the material that they make."""
+    if material := material_name(given):
+        yield translated(material)
     for spec in specs:
         value, label = given.get(spec["name"]), translated(spec["label"])
         label = label[:1].lower() + label[1:]
@@ -43,10 +45,17 @@ def _field_texts(specs: list[dict[str, Any]], given: dict[str, Any], units: Unit
             continue
         if isinstance(value, dict):
             shape = [translated(value["shape"])] if "shape" in value else []
-            inner = [*shape, *_field_texts(spec.get("fields", []), value, units)]
+            inner = [*shape, *_field_texts(spec.get("fields", []), value, units), *_part_texts(value, units)]
             yield f"{label} ({', '.join(inner)})"
         elif value is not None and not isinstance(value, bool):
             yield f"{label} {_value_text(value, spec.get('unit', ''), units)}"
+
+
+def _part_texts(section: dict[str, Any], units: UnitSystem) -> Iterator[str]:
+    """Yield each part of a composite cross-section."""
+    specs = forms_of_structures()["section_part"]
+    for part in section.get("parts", ()):
+        yield f"({', '.join([translated(part['shape']), *_field_texts(specs, part, units)])})"
 
 
 def _value_text(value: Any, si: str, units: UnitSystem) -> str:

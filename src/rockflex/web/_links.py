@@ -108,7 +108,12 @@ def _can_be_drawn(structure: Any) -> bool:
         return False
     kinds = [kind for kind in KINDS if structure.get(kind) is not None]
     elements = structure.get("elements", [])
-    tables = [*(structure[kind] for kind in kinds), structure.get("stories", {})]
+    tables = [
+        *(structure[kind] for kind in kinds),
+        structure.get("stories", {}),
+        structure.get("podium", {}),
+        structure.get("joints", {}),
+    ]
     return (
         len(kinds) == 1
         and all(isinstance(each, dict) for each in tables)

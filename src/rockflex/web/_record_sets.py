@@ -14,6 +14,7 @@ from rockflex.foundation.language import translated, use_language
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._suite import Selection
 from rockflex.report.run._report_page import run_report_as_html
 from rockflex.response._comparison import Comparison
 from rockflex.response._limit_checks import check
@@ -39,7 +40,7 @@ from rockflex.web._selection import (
     target_spectrum_of_choice,
 )
 from rockflex.web._state import PageState, refusals_of_alternative
-from rockflex.web._structure import BuiltStructure, build_page_structure, ground_under_page_structure
+from rockflex.web._structure import SLICED, BuiltStructure, build_page_structure, ground_under_page_structure
 from rockflex.web._studies import StudyPage
 from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
@@ -79,7 +80,12 @@ class RecordSetStudy:
     others: tuple[RunsOfSet, ...]
     records: VisitorRecords
     motions: tuple[GroundMotion, ...]
-    periods: tuple[float, float] | None
+    selection: Selection | None
+
+    @property
+    def periods(self) -> tuple[float, float] | None:
+        """Smallest and largest period in s for which the records were chosen."""
+        return None if self.selection is None else (float(self.selection.periods[0]), float(self.selection.periods[-1]))
 
     @property
     def all(self) -> tuple[RunsOfSet, ...]:
@@ -87,18 +93,27 @@ class RecordSetStudy:
         return self.own, *self.others
 
     @property
+    def kept(self) -> tuple[RunsOfSet, ...]:
+        """The alternatives, without the fixed base of the present structure."""
+        return tuple(each for each in self.others if each.state is not self.own.state)
+
+    @property
+    def fixed(self) -> RunsOfSet | None:
+        """The present structure on a fixed base; None if the set would be too large with it, or it cannot lift."""
+        return next((each for each in self.others if each.state is self.own.state), None)
+
+    @property
     def compared(self) -> tuple[RunsOfSet, ...]:
         """Those side by side: the kept ones in their order, the present one unless it is kept, and the fixed base."""
-        kept = [each for each in self.others if each.name != FIXED]
-        present = [] if any(each.key == self.own.key for each in kept) else [self.own]
-        return (*kept, *present, *(each for each in self.others if each.name == FIXED))
+        present = [] if any(each.key == self.own.key for each in self.kept) else [self.own]
+        return (*self.kept, *present, *([] if self.fixed is None else [self.fixed]))
 
 
 FIXED = "fixed"  # the present structure on a fixed base
 
 
 def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStudy:
-    """Return the runs of the set of records of a state; with alternatives also theirs, and those of a fixed base."""
+    """Return the runs of the set of records of a state, of its alternatives and of a fixed base."""
     choice = state.record_set
     records = records_of_named_suites(state, choice.suites, uploads, "record_set.suites")
     motions = tuple(each if choice.scale == 1.0 else each.scaled(choice.scale) for each in records.load(Path()))
@@ -110,18 +125,19 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
         with errors_as_refusals(path, f"{label}: "):
             options = each.run_options(ground)
             case = options.case(parse_model(label), built.properties, history=True, floors=True)
-        friction = "friction" in state.limits and case.model.springs is None  # on springs it takes minutes
         made_from = [each.structure.model_dump(exclude_none=True), each.option_keys([label]), label]
         made_from += [state.free_vibration, acting]
-        return RunsOfSet(name, each, built, case, friction, sha256(json.dumps(made_from).encode()).hexdigest())
+        return RunsOfSet(
+            name, each, built, case, "friction" in state.limits, sha256(json.dumps(made_from).encode()).hexdigest()
+        )
 
     own = runs(next_free_name(state), state, state.model_of_set, "record_set.model")
     others = list[RunsOfSet]()
     for kept in state.alternatives:
         with refusals_of_alternative(kept.name):
             others.append(runs(kept.name, state.kept_state(kept), model_of_alternative(kept), "alternatives"))
-    if others and own.built.properties.n_modes and FIXED not in (each.name for each in others):
-        others.append(runs(FIXED, state, FIXED, "alternatives"))
+    if own.built.properties.n_modes and own.case.model.lifts and FIXED not in (each.name for each in others):
+        others.append(runs(FIXED, state, FIXED, "record_set.model"))
     try:
         check_size_of_set([each.case for each in (own, *others)], motions, "record_set.suites")
     except Refusal:
@@ -131,11 +147,8 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
         check_size_of_set([own.case], motions, "record_set.suites")
     with errors_as_refusals("record_set.rule"):
         checked_rule(choice.rule or None, len(motions))
-    periods = None
-    if choice.suites == [SELECTED]:
-        chosen = SELECTIONS.of(state, uploads)[0].periods
-        periods = (float(chosen[0]), float(chosen[-1]))
-    return RecordSetStudy(own, tuple(others), records, motions, periods)
+    chosen = SELECTIONS.of(state, uploads)[0] if choice.suites == [SELECTED] else None
+    return RecordSetStudy(own, tuple(others), records, motions, chosen)
 
 
 def _checksum_of_motions(motions: tuple[GroundMotion, ...]) -> str:
@@ -197,7 +210,7 @@ def _set_of_job(job: RecordSetJob, state: PageState, runs: RunsOfSet | None = No
 
 def _compared_view(job: RecordSetJob, state: PageState) -> dict[str, Any] | None:
     """Return values for design and checks of all alternatives; None without one."""
-    if not job.study.others:
+    if not job.study.kept:
         return None
     compared = job.study.compared
     sets = [_set_of_job(job, state, each) for each in compared]
@@ -227,7 +240,7 @@ def _comparison_report(job: RecordSetJob, state: PageState) -> str:
     import pandas as pd
 
     compared = job.study.compared[:MAX_ALTERNATIVES]
-    if len(compared) < 2:
+    if not job.study.kept:
         raise Refusal({"alternatives": "there is none to compare with. Keep the present structure, and change it."})
     sets, names = [_set_of_job(job, state, each) for each in compared], [each.name for each in compared]
     frames = [found.peaks.reset_index().assign(structure=name) for name, found in zip(names, sets, strict=True)]
@@ -296,6 +309,7 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         {"name": name, "symbol": OUTPUTS[name].symbol, "unit": unit.name, "size": unit.size,
          "listed": name in DEMANDS_BY_RECORD, "peaks": peaks[name].tolist(), **statistics.loc[name].to_dict()}
         for name, unit in units.items()
+        if name != "max_story_drift" or state.structure.kind not in SLICED
     ]  # fmt: skip
     view["records"] = [
         {"name": run.motion, "status": run.status, "scale": None if motion.metadata is None else motion.metadata.scale,
@@ -303,12 +317,14 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         for run, motion in zip(found.responses, found.motions, strict=True)
     ]  # fmt: skip
     own = job.study.own
-    view["friction_due"] = "friction" in state.limits and not own.friction and own.case.model.springs is None
+    view["friction_due"] = "friction" in state.limits and not own.friction
     reached = found.rocking_period
     view["short"] = found.periods is not None and found.periods[1] < min(reached, _longest_of_target(state))
     view["model"], view["warnings"] = found.responses[0].model, found.warnings
     view["checks"] = checks_view(found, state, friction=own.friction)
     view["compared"] = _compared_view(job, state)
+    fixed = job.study.fixed and _set_of_job(job, state, job.study.fixed)
+    view["fixed_moment"] = fixed and fixed.statistics.loc["max_base_moment", "design"]
     return as_json_value(view)
 
 
@@ -343,6 +359,7 @@ def _record_set_report(job: RecordSetJob, state: PageState) -> str:
         units=state.units,
         language=state.language,
         notes=input_notes(state, of_set=True),
+        selection=study.selection,
         **head,
         limits=state.check_limits(friction=study.own.friction),
     )

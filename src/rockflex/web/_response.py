@@ -3,13 +3,16 @@
 import math
 from collections.abc import Sequence
 from contextlib import suppress
+from time import monotonic
 from typing import Any
 
 import numpy as np
 
+from rockflex.engine.stops import RunStoppedError, asked_to_stop, stopping_when
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
+from rockflex.foundation.language import translated
 from rockflex.foundation.units import UnitSystem
 from rockflex.models._label import parse_model
 from rockflex.models._work import cost_model_of
@@ -26,6 +29,7 @@ from rockflex.web._limits import check_work_of_runs
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState
 from rockflex.web._structure import (
+    SLICED,
     BuiltStructure,
     build_page_structure,
     ground_under_page_structure,
@@ -76,6 +80,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 
 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
+MAX_JOINTS_DRAWN = 3  # joints above the base whose rotations are curves, at most
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
 CURVES = ("rotation", "top_displacement", "base_moment", "base_shear", "total_top_displacement")
 MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `CostModel`
@@ -116,14 +121,15 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
     ground = ground_under_page_structure(state.ground, p)
     lifting = next((label for label in state.models if parse_model(label).lifts), "MDOF-S" if p.n_modes else "rigid")
     simple = p.n_modes > 0 and not parse_model(lifting).yields and not p.stories
-    moment = top = None
+    drifts = not quick and "drift_ratio" in state.limits  # which only floors have
+    moment = top = fixed = None
     try:
         motion = chosen_motion(state.record, uploads).scaled(state.scale)
 
         def case(label: str, *, main: bool) -> PreparedCase:
             with errors_as_refusals("models", f"{label}: "):
                 options = state.run_options(ground if main else None)
-                return options.case(parse_model(label), p, history=main, floors=False)
+                return options.case(parse_model(label), p, history=main or not quick, floors=main and drifts)
 
         def run(label: str, *, main: bool) -> Response:
             prepared = case(label, main=main)
@@ -138,23 +144,37 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
         return {"note": " ".join(error.errors.values())}
     if simple:
         displacement = motion.sd(2.0 * math.pi / float(p.omega[0]), float(p.zeta[0]))
-        moment = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2) * displacement
+        moment = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2) * displacement
         top = None if p.top_height is None else abs(float(p.top_ordinate[0])) * displacement
     elif p.n_modes:
         with suppress(Refusal):
             fixed = run("fixed", main=False)
             moment, top = fixed.max_base_moment, fixed.max_total_top_displacement
-    curves = response_curves(built, response, None, SKETCH_POINTS // 2 if quick else SKETCH_POINTS, CURVES[:2])
+    drawn: dict[str, Any] = {
+        "models": [_sketch_curves(built, response, SKETCH_POINTS // 2 if quick else SKETCH_POINTS)],
+        "nominal": p.nominal_overturning_rotation,
+        "fixed_base_moment": moment,
+        "fixed_top_displacement": top,
+    }
+    if not quick:
+        kept = envelope_indices([motion.acceleration], SKETCH_POINTS)
+        drawn |= {
+            "twin": None if fixed is None else _sketch_curves(built, fixed, SKETCH_POINTS),
+            "accelerogram": {
+                "t": pack_array_as_base64(motion.time[kept]),
+                "a": pack_array_as_base64(motion.acceleration[kept]),
+            },
+            "checks": checks_view(response, state, friction=friction_is_known(response, state)),
+        }
+    return as_json_value(drawn)
+
+
+def _sketch_curves(built: BuiltStructure, response: Response, points: int) -> dict[str, Any]:
+    """Return a response as the first tab draws it, with the peaks that it reads."""
+    curves = response_curves(built, response, None, points, CURVES[:2])
     unread = [name for name in curves["peaks"] if name.startswith("time_of_") and name != "time_of_max_rotation"]
     curves["peaks"] = {name: value for name, value in curves["peaks"].items() if name not in unread}
-    return as_json_value(
-        {
-            "models": [curves],
-            "nominal": p.nominal_overturning_rotation,
-            "fixed_base_moment": moment,
-            "fixed_top_displacement": top,
-        }
-    )
+    return curves
 
 
 def response_view(
@@ -185,8 +205,8 @@ def response_view(
             ),
             "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
-            "floors": floors_view(found[0]),
-            "checks": checks_view(found[0], state, friction=not is_long_run_report(found[0], motion, state)),
+            "floors": floors_view(found[0], stories=state.structure.kind not in SLICED),
+            "checks": checks_view(found[0], state, friction=friction_is_known(found[0], state)),
         }
     )
 
@@ -194,18 +214,21 @@ def response_view(
 MAX_FLOORS = 60  # of a table
 
 
-def floors_view(response: Response) -> list[dict[str, float]]:
-    """Return the peaks of each floor from the top down, with its height in m; none if they are not known."""
+def floors_view(response: Response, *, stories: bool) -> list[dict[str, float]]:
+    """Return the peaks of each floor from the top down, with its height in m; none if they are not known.
+
+    Floors that are slices have no `stories`, hence no drifts.
+    """
     assert response.history is not None  # asked for in `simulate_state_models`
     peaks, floors = response.floors, response.history.model.properties.floors
     if peaks is None or floors is None or floors.heights.size > MAX_FLOORS:
         return []
     if floors.story_heights.min() <= 0.0:
         return []
+    drifts = {"story_drift": peaks.story_drift, "drift_ratio": peaks.story_drift / floors.story_heights}
     columns = {
         "height": floors.heights,
-        "story_drift": peaks.story_drift,
-        "drift_ratio": peaks.story_drift / floors.story_heights,
+        **(drifts if stories else {}),
         "story_shear": peaks.story_shear,
         "floor_acceleration": peaks.floor_acceleration,
         "total_floor_displacement": peaks.total_floor_displacement,
@@ -220,7 +243,7 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     """Suggest a yield displacement in m, beyond the uplift of the base and below the demand on a fixed base."""
     if not p.n_modes:
         return None
-    stiffness = float(p.effective_mass[0] * p.effective_height[0] * p.omega[0] ** 2)
+    stiffness = float(p.effective_mass[0] * p.moment_heights[0] * p.omega[0] ** 2)
     held = 1.5 * p.resisting_moment / stiffness
     fixed = 0.5 * motion.sd(2.0 * np.pi / float(p.omega[0]), float(p.zeta[0]))
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
@@ -245,8 +268,7 @@ def response_curves(
         points *= 2  # loops need more points than curves over time
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     kept = np.unique(np.concatenate((envelope_indices(list(curves.values()), points), events, events + 1)))
-    modal = history.modal_displacement[kept]
-    drawn = modal @ built.outline.shapes[:, : modal.shape[1]].T
+    drawn = built.outline.sway(history.modal_displacement[kept], history.joint_rotation[kept])
     return {
         "label": response.model,
         "status": response.status,
@@ -258,15 +280,39 @@ def response_curves(
         **{name: pack_array_as_base64(values[kept]) for name, values in curves.items()},
         "uplifted": pack_array_as_base64(history.uplifted[kept]),
         "points": pack_array_as_base64(drawn),
+        "yielding": _times_of_yielding(history),
+    }
+
+
+def _times_of_yielding(history: History) -> dict[str, list[Any]] | None:
+    """Return when each element first yields and breaks, and each story first yields, in s, None if it does not.
+
+    None where nothing can. An element that slides has no such time.
+    """
+    p = history.model.properties
+    if not history.model.elements:
+        return None
+    states, time, n = history.element_state, history.time, len(p.elements)
+
+    def first(place: int, state: int) -> float | None:
+        found = np.flatnonzero(states[:, place] == state)
+        return float(time[found[0]]) if found.size else None
+
+    yields = [first(k, 1) if each.states[1] == "yielding" else None for k, each in enumerate(p.elements)]
+    return {
+        "elements": yields,
+        "broken": [first(k, 2) for k in range(n)],
+        "stories": [[each.floor, first(n + k, 1)] for k, each in enumerate(p.stories)],
     }
 
 
 def base_motion_curves(history: History) -> dict[str, Array]:
     """Return how the base of a history moves on its ground, in m, shapes (n_states,); none on rigid ground.
 
-    The slip if it can slide, and on springs the heave and the rise of the edges.
+    The slip if it can slide, and on springs the heave and the rise of the edges; and the rotations in rad of up to
+    three joints above the base.
     """
-    curves: dict[str, Array] = {}
+    curves = {f"joint_{k}": each for k, each in enumerate(history.joint_rotation.T[:MAX_JOINTS_DRAWN], 1)}
     layout = history.model.layout
     if layout.slip >= 0:
         curves["slip"] = history.slip
@@ -313,10 +359,7 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
 
 
 def is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
-    """Whether energies and friction would take too long here, as they do on many stiff springs."""
-    assert response.history is not None  # asked for in `simulate_state_models`
-    if response.history.model.springs is not None:
-        return True
+    """Whether the energies of a run would take too long for its report."""
     try:
         check_work_of_energy(response, motion, state)
     except Refusal:
@@ -324,7 +367,22 @@ def is_long_run_report(response: Response, motion: GroundMotion, state: PageStat
     return False
 
 
-LONG_FRICTION = "its friction takes too long for a page; use rockflex check, or rf.check"
+FRICTION_SECONDS = 2.0  # of an answer, for the friction that a run requires
+
+
+def friction_is_known(run: Response, state: PageState) -> bool:
+    """Compute the friction that a run requires, if it is limited, and tell whether it was in time; the run keeps it."""
+    if "friction" not in state.limits or run.history is None or run.history.model.layout.slip >= 0:
+        return True
+    end, left = monotonic() + FRICTION_SECONDS, asked_to_stop()
+    try:
+        with stopping_when(lambda: left() or monotonic() > end), suppress(InputError):
+            run.history.required_friction_excluding_impacts()
+    except RunStoppedError:
+        if left():
+            raise
+        return False
+    return True
 
 
 def checks_view(result: Response | RecordSet, state: PageState, *, friction: bool) -> dict[str, Any]:
@@ -333,7 +391,11 @@ def checks_view(result: Response | RecordSet, state: PageState, *, friction: boo
     `unlimited` has the names of the checks that only need a limit, and `missing` what the others lack.
     """
     table = check(result, state.check_limits(friction=friction))
-    left_out = {"sliding": LONG_FRICTION} if "friction" in state.limits and not friction else {}
+    long = translated(
+        "the friction that it requires takes more than {n} s here; a set of records computes it in the background",
+        n=f"{FRICTION_SECONDS:g}",
+    )
+    left_out = {"sliding": long} if "friction" in state.limits and not friction else {}
     missing = [(name, left_out.get(name, lacks)) for name, lacks in table.missing]
     rows: list[dict[str, Any]] = []
     for each in table.rows:

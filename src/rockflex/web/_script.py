@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from rockflex.fragility._limit_states import NOMINAL, ROCKING
+from rockflex.fragility._limit_states import LIMIT_STATES, NOMINAL, ROCKING
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
+from rockflex.structure._jointed import joints_at
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.studies._prepared_case import yielding_model_labels
@@ -26,7 +27,8 @@ from rockflex.web._selection import (
     target_spectrum_call,
     target_spectrum_of_choice,
 )
-from rockflex.web._state import ROTATION, PageState, PulseChoice, TargetChoice
+from rockflex.web._state import ROTATION, PageState, PulseChoice, TargetChoice, limit_of_choice
+from rockflex.web._structure import build_page_structure
 
 
 def response_script(state: PageState, upload_name: str = "record") -> str:
@@ -72,8 +74,18 @@ def cloud_script(state: PageState, study: CloudStudy) -> str:
         "curves = {}",
         f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == NOMINAL.name}):",
     ]
+    limit = limit_of_choice(cloud, build_page_structure(state.structure).properties.top_height)
     if cloud.limit == ROTATION:
         lines.append(f"    curves[fit.model] = fit.outcomes.exceedance(im, {cloud.rotation!r})")
+    elif cloud.limit not in LIMIT_STATES:
+        column, bound = str(limit).split(" > ")
+        lines += [
+            '    part = runs[runs["model"].astype(str) == fit.model]',
+            f'    beyond = (part["{column}"].abs() > {bound}) | (part["status"] == "overturned")',
+            "    if beyond.nunique() > 1:  # else there is no curve to fit",
+            f"        curve = rf.fit_logistic(part[{cloud.measure!r}], beyond)",
+            "        curves[fit.model] = curve.probability(im)",
+        ]
     else:
         curve = "initiation" if cloud.limit == ROCKING.name else "overturning"
         lines.append(f"    curves[fit.model] = fit.outcomes.{curve}.probability(im)")
@@ -201,7 +213,9 @@ def _springs_code(table: SpringsTable | SpringBedTable) -> str:
     if isinstance(table, SpringsTable):
         edges = "[side * properties.half_width - properties.eccentricity for side in (-1, 1)]"
         positions = edges if table.positions is None else _python_literal(table.positions)
-        named = _python_named_arguments({"stiffness": table.stiffness, "damping": table.damping})
+        named = _python_named_arguments(
+            {"stiffness": table.stiffness, "damping": table.damping, "capacity": table.capacity}
+        )
         return f"rf.Springs({positions}, {named})"
     named = _python_named_arguments(table.model_dump(exclude={"heave_damping_ratio", "method"}))
     maker = f"{table.method or 'asce41'}_bed" if table.subgrade_modulus is None else "winkler_bed"
@@ -247,6 +261,11 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
         lines.append(
             f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
         )
+    if entry.podium is not None:
+        lines.append(f"structure = rf.Podium(structure, {_python_named_arguments(entry.podium.model_dump())})")
+    if entry.joints is not None:
+        joints = ", ".join(_python_call("Joint", vars(each)) for each in joints_at(**entry.joints.model_dump()))
+        lines.append(f"structure = rf.Jointed(structure, [{joints}])")
     if entry.eccentricity:
         lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
     if entry.one_sided is not None:

@@ -11,16 +11,14 @@ from pydantic import AfterValidator, Field, StringConstraints, ValidationError
 from pydantic_core import PydanticCustomError
 
 from rockflex.foundation.errors import InputError
+from rockflex.foundation.json import with_infinite_numbers
 from rockflex.foundation.language import Language
 from rockflex.foundation.units import SystemName
 from rockflex.fragility._limit_states import (
-    LIMIT_STATES,
     NOMINAL,
     OVERTURNING,
     ROCKED,
     ROCKING,
-    LimitState,
-    rotation_limit_state,
 )
 from rockflex.motion._measures import IntensityMeasure, scalable_measures
 from rockflex.motion._recordings import Combination
@@ -63,22 +61,22 @@ class LimitStateChoice(NamedTuple):
 
 
 NOMINAL_LIMIT = f"the nominal limit {NOMINAL.label.replace('_1', '₁')}"
-ROTATION = "rotation"  # whose size the visitor chooses
+ROTATION, DRIFT, RESIDUAL_DRIFT, DUCTILITY = "rotation", "drift", "residual_drift", "ductility"
+OF_STORIES = (RESIDUAL_DRIFT, DUCTILITY)  # limits of stories that yield
 LIMIT_STATE_CHOICES = (
     LimitStateChoice(ROCKING.name, f"it rocks (uplift with θ > {1e3 * ROCKED:g} mrad)", ""),
     LimitStateChoice(ROTATION, "the rotation exceeds …", "a rotation"),
+    LimitStateChoice(DRIFT, "the top drifts, apart from the rotation, by more than …", ""),
+    LimitStateChoice(RESIDUAL_DRIFT, "a story keeps a drift of more than …", ""),
+    LimitStateChoice(DUCTILITY, "a story needs a ductility of more than …", ""),
     LimitStateChoice(NOMINAL.name, NOMINAL_LIMIT, NOMINAL_LIMIT),
     LimitStateChoice(OVERTURNING.name, "it overturns", OVERTURNING.label),
 )
+"""The limits of the studies; each of the second to fifth has a bound, the field of its name."""
 
 
 LimitName = Annotated[str, check_of_known_names(lambda: [each.name for each in LIMIT_STATE_CHOICES])]
 DesignLimit = Annotated[str, check_of_known_names(lambda: [each.name for each in LIMIT_STATE_CHOICES if each.noun])]
-
-
-def limit_state_of_choice(name: str, rotation: float) -> LimitState:
-    """Return a limit by its name on the page; `rotation` in rad belongs to the limit "rotation"."""
-    return rotation_limit_state(rotation) if name == ROTATION else LIMIT_STATES[name]
 
 
 def limit_state_labels() -> list[dict[str, Any]]:
@@ -197,6 +195,18 @@ class PulseChoice(TomlTable):
     nu: float = Field(0.0, ge=-math.pi, le=math.pi, description="the phase ν in rad, from -π to π")
 
 
+class SiteChoice(TomlTable):
+    """The few numbers of a structure at a site, from which "My site" makes all others."""
+
+    kind: Literal["pier", "building", "block"] = Field("pier", description='"pier", "building" or "block"')
+    width: float = Field(7.0, ge=0.05, le=200.0, description="the width of the base in m, from 0.05 to 200")
+    height: float = Field(24.0, ge=0.1, le=400.0, description="the height in m, from 0.1 to 400")
+    weight: float = Field(15e6, ge=10.0, le=1e10, description="the weight in N, from 10 to 1e10")
+    material: Literal["concrete", "steel", "timber", "masonry"] = Field(
+        "concrete", description='"concrete", "steel", "timber" or "masonry"'
+    )
+
+
 class RecordChoice(TomlTable):
     """A ground motion: one of a suite, a pulse, an upload by its checksum, or one of the folder with its checksum.
 
@@ -224,8 +234,13 @@ class CloudChoice(TomlTable):
     )
     models: Labels = Field(["MDOF-S"], description="a list of one to four models")
     measure: MeasureName = Field("pgv", description="an intensity measure")
-    limit: LimitName = Field("rocking", description="a limit state")
+    limit: LimitName = Field("rotation", description="a limit state")
     rotation: float = Field(0.01, ge=1e-4, le=1.5, description="a rotation in rad, from 0.0001 to 1.5")
+    drift: float = Field(0.01, ge=1e-4, le=1.0, description="a drift over the height, from 0.0001 to 1")
+    residual_drift: float = Field(
+        0.005, ge=1e-5, le=1.0, description="a drift over the height of the story, from 0.00001 to 1"
+    )
+    ductility: float = Field(4.0, ge=1.0, le=100.0, description="a ductility from 1 to 100")
     confidence: float = Field(
         0.9,
         ge=0.5,
@@ -266,6 +281,20 @@ class RecordSetChoice(TomlTable):
     rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
 
 
+def limit_of_choice(choice: "CloudChoice | DesignChoice", height: float | None = None) -> float | str:
+    """Return the limit of a tab in the form that the library expects; `height` is that of the top in m."""
+    if choice.limit == ROTATION:
+        return choice.rotation
+    if isinstance(choice, DesignChoice):
+        return choice.limit
+    bounds = {
+        DRIFT: ("max_top_displacement", choice.drift * (height or 1.0)),
+        RESIDUAL_DRIFT: ("max_residual_drift_ratio", choice.residual_drift),
+        DUCTILITY: ("max_ductility", choice.ductility),
+    }
+    return "{} > {!r}".format(*bounds[choice.limit]) if choice.limit in bounds else choice.limit
+
+
 LimitOfCheck = Annotated[str, check_of_known_names(lambda: [each.name for each in fields(CheckLimits)])]
 
 
@@ -295,6 +324,7 @@ class PageState(RunOptionKeys):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+    site: SiteChoice = Field(default_factory=lambda: SiteChoice.model_validate({}), description="a table")
     alternatives: list[Alternative] = Field(
         [], max_length=MAX_ALTERNATIVES, description=f"a list of at most {MAX_ALTERNATIVES} tables"
     )
@@ -361,9 +391,9 @@ def parse_page_state(content: Any) -> PageState:
             raise Refusal(
                 f"The link holds more than {MAX_STATE_VALUES} values, which is more than the page takes.", 413
             )
-        state = PageState.model_validate(_with_infinite_numbers(content))
+        state = PageState.model_validate(with_infinite_numbers(content))
     except ValidationError as error:
-        structure = _with_infinite_numbers(content.get("structure"))
+        structure = with_infinite_numbers(content.get("structure"))
         ranges = form_number_errors("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
         raise Refusal(dict([*(ranges | _field_error_messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
@@ -432,15 +462,6 @@ def _number_of_values(value: Any) -> int:
     if isinstance(value, dict):
         return 1 + sum(map(_number_of_values, value.values()))
     return 1 + sum(map(_number_of_values, value)) if isinstance(value, list) else 1
-
-
-def _with_infinite_numbers(value: Any) -> Any:
-    """Replace "inf" by the number, which JSON cannot write."""
-    if isinstance(value, dict):
-        return {str(key): _with_infinite_numbers(each) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_with_infinite_numbers(each) for each in value]
-    return math.inf if value == "inf" else value
 
 
 def _field_error_messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:

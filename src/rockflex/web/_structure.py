@@ -28,6 +28,7 @@ from rockflex.structure.file._toml_table import TomlTable
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
+SLICED = ("cantilever", "beam", "tapered_tower", "wall_frame")  # kinds whose floors are slices of what is continuous
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
 
 
@@ -231,18 +232,22 @@ def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:
 def _pivot_parameter_facts(p: RockingProperties, pivot: Pivot) -> list[dict[str, Any]]:
     alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
     limit = pivot.nominal_overturning_rotation
+    turned = {"quantity": "rotation"}
     facts = [
         _fact("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
         _fact("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
         _fact("a_lift", pivot.uplift_acceleration, "m/s²", "slow ground acceleration that lifts the base"),
         *(
-            [_fact("α", alpha, "rad", "rotation beyond which it does not return to the upright position")]
+            [_fact("α", alpha, "rad", "rotation beyond which it does not return to the upright position") | turned]
             * (p.n_modes > 0)
         ),
         *([_fact("λ", pivot.recentring_ratio, "", RECENTRING_HELP)] if pivot.dissipator_moment > 0.0 else []),
-        _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(B/h*₁)")
-        if p.symmetric
-        else _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(b/h*₁), b to this edge"),
+        (
+            _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(B/h*₁)")
+            if p.symmetric
+            else _fact("θ_nom", limit, "rad", "nominal limit 0.7 atan(b/h*₁), b to this edge")
+        )
+        | turned,
     ]
     none = {"none": "the tendons always bring it back"}
     edge = {} if p.symmetric else {"edge": pivot.side}

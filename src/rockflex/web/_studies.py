@@ -12,7 +12,15 @@ from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.json import as_json_value
 from rockflex.foundation.language import translated
 from rockflex.fragility._clouds import CloudFits, fit_each_cloud, recordings_of_runs
-from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKING, observed_exceedance_fractions
+from rockflex.fragility._limit_states import (
+    NOMINAL,
+    OVERTURNING,
+    ROCKING,
+    LimitState,
+    limit_state_of,
+    observed_exceedance_fractions,
+)
+from rockflex.fragility._logistic import UnanimousOutcome, fit_logistic
 from rockflex.fragility._outcomes import fit_outcomes
 from rockflex.motion._measures import MEASURES
 from rockflex.structure._rocking import RockingProperties
@@ -28,7 +36,7 @@ from rockflex.web._limits import MAX_RUN_COST, check_size_of_study
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._script import cloud_script, design_script
 from rockflex.web._selection import records_of_named_suites
-from rockflex.web._state import ROTATION, CloudChoice, DesignChoice, PageState, limit_state_of_choice
+from rockflex.web._state import DRIFT, OF_STORIES, ROTATION, CloudChoice, PageState, limit_of_choice
 from rockflex.web._structure import build_page_structure
 from rockflex.web._uploads import UploadedRecords
 
@@ -147,6 +155,17 @@ def cloud_study(state: PageState, uploads: UploadedRecords) -> CloudStudy:
         return CloudStudy(**content)
 
 
+def fragility_limit_of_choice(state: PageState) -> LimitState:
+    """Return the limit state of the Fragility tab; refuse one on a demand that the structure has not."""
+    choice, p = state.cloud, build_page_structure(state.structure).properties
+    if choice.limit in OF_STORIES and not p.stories:
+        message = "no story of this structure yields. Give its stories a strength, or choose another limit."
+        raise Refusal({"cloud.limit": message})
+    if choice.limit == DRIFT and not (p.n_modes and p.top_height):
+        raise Refusal({"cloud.limit": "the top of this structure has no drift that is known. Choose another limit."})
+    return limit_state_of(limit_of_choice(choice, p.top_height))
+
+
 def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     """Return progress, points and curves for the chosen measure and limit state."""
     choice = state.cloud
@@ -173,20 +192,26 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     if not (im > 0.0).all() or im.min() == im.max():
         view["notes"].append(translated("All runs so far have the same intensity."))
         return as_json_value(view)
+    limit = fragility_limit_of_choice(state)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
     fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
-        view["curves"].append(_fragility_curve_view(fit, part, choice, grid, view["notes"]))
+        view["curves"].append(_fragility_curve_view(fit, part, choice, limit, grid, view["notes"]))
     return as_json_value(view)
 
 
 def _fragility_curve_view(
-    fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
+    fit: CloudFits,
+    part: "pd.DataFrame",
+    choice: CloudChoice,
+    limit: LimitState,
+    grid: Array,
+    notes: list[str],
 ) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
-    over = limit_state_of_choice(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
+    over = limit.exceeded(part).to_numpy(dtype=bool)
     found: dict[str, Any] = {
         "model": fit.model,
         "n": len(part),
@@ -209,17 +234,34 @@ def _fragility_curve_view(
             turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
             found["p"] = turned.probability(grid)
             found["median"] = _interpolated_fragility_median(grid, found["p"])
-            found["low"], found["high"] = turned.band(grid, choice.confidence)
+            found["low"], found["high"] = _rising_band(*turned.band(grid, choice.confidence))
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
-    low, high = curve.band(grid, choice.confidence)
+    curve: Any = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
+    if limit.column:
+        groups = recordings_of_runs(part)
+        alike = UnanimousOutcome(bool(over[0]), over.size, 0 if groups is None else groups.nunique())
+        try:
+            curve = alike if over.all() or not over.any() else fit_logistic(im, over, groups)
+        except (InputError, SolverError) as error:
+            notes.append(f"{fit.model}: {error}")
+            return found
+    low, high = _rising_band(*curve.band(grid, choice.confidence))
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
     if note:
         notes.append(f"{fit.model}: {note}")
     return found | {"p": curve.probability(grid), "low": low, "high": high, "median": median}
+
+
+def _rising_band(low: Array, high: Array) -> tuple[Array, Array]:
+    """Return a band that rises with the intensity, as the probability does.
+
+    Far from the runs that exceed the limit the error of the logit outgrows the logit, and the band of each intensity by
+    itself reaches from 0 to 1; what a higher intensity has as its upper limit holds for a lower one, too.
+    """
+    return np.fmax.accumulate(low), np.fmin.accumulate(high[::-1])[::-1]
 
 
 def _interpolated_fragility_median(grid: Array, p: Array) -> float | None:
@@ -258,11 +300,6 @@ CLOUD_PAGE = StudyPage(
 )
 
 
-def limit_for_fragility(choice: DesignChoice) -> float | str:
-    """Return the limit in the form that the library expects."""
-    return choice.rotation if choice.limit == ROTATION else choice.limit
-
-
 def design_study(state: PageState, uploads: UploadedRecords) -> DesignStudy:
     """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors."""
     choice = state.design
@@ -282,7 +319,7 @@ def design_study(state: PageState, uploads: UploadedRecords) -> DesignStudy:
         "tendons": levels,
         "measure": choice.measure,
         "level": choice.at,
-        "limits": [limit_for_fragility(choice)],
+        "limits": [limit_of_choice(choice)],
         "target": choice.target,
     }
     with errors_as_refusals("design"):
@@ -293,7 +330,7 @@ def _design_table(job: StudyJob, state: PageState) -> "pd.DataFrame":
     """Return the table of designs from the runs so far, one row per design."""
     runs, choice = some_runs_of_study_job(job), state.design
     with errors_as_refusals("design"):
-        return design_table(runs, limit_for_fragility(choice), measure=choice.measure, at=choice.at)
+        return design_table(runs, limit_of_choice(choice), measure=choice.measure, at=choice.at)
 
 
 def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What Figures 9 and 13 say about a thousand random pairs, computed for many samples of the same pairs."""
+"""The measures of Figures 9 and 13 for a thousand random pairs, computed for many samples of the same pairs."""
 
 from typing import TYPE_CHECKING
 

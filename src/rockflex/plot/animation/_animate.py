@@ -16,7 +16,15 @@ from rockflex.studies.progress import ProgressChoice, reporting_progress
 
 MIN_WIDTH, MAX_WIDTH = 320, 3840  # pixels
 MAX_RESPONSES = 6
-_DEFAULT_PANELS = ("rotation", "total_top_displacement", "top_displacement", "base_moment", "slip", "edge_uplift")
+_DEFAULT_PANELS = (
+    "rotation",
+    "total_top_displacement",
+    "top_displacement",
+    "base_moment",
+    "joint_rotation",
+    "slip",
+    "edge_uplift",
+)
 _WRITERS = {GIF: write_gif, MP4: write_video}
 
 

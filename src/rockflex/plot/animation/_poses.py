@@ -164,7 +164,8 @@ class StructurePoses:
         """Return where points of the outline, shape (k, 3), are drawn in a frame; those in the ground `sunk` lower."""
         x, z, how = points.T
         sway = np.interp(z, self.outline.heights, self.sway[frame])
-        across, up = self.place(frame, x + amplification * sway, z, amplification)
+        turning = np.minimum(z, self.outline.turning)
+        across, up = self.place(frame, x + amplification * sway, turning, amplification)
         still = np.where(z > 0.0, z, z - sunk * (how == GROUND))
         return np.where(how == GROUND, x, across), np.where(how == BODY, up, still)
 
@@ -192,7 +193,7 @@ def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Arra
         rotation=at.rotation if model.lifts else still,
         slip=at.slip if model.lifts else still,
         heave=at.heave if sprung else still,
-        sway=at.modal_displacement @ outline.shapes.T,
+        sway=outline.sway(at.modal_displacement, at.joint_rotation),
         rise=at.edge_uplift if model.lifts else np.zeros((times.size, 2)),
         uplifted=np.asarray(at.uplifted) if model.lifts else np.zeros(times.size, bool),
         sliding=running & (np.abs(at.slip_velocity) > _MIN_SLIP_SPEED) if model.lifts else np.zeros(times.size, bool),

@@ -17,7 +17,13 @@ from rockflex.foundation.language import translated
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve
-from rockflex.plot.animation._poses import FrameTiming, StructurePoses
+from rockflex.plot.animation._poses import (
+    FrameTiming,
+    StructurePoses,
+    default_amplification,
+    outline_of_response,
+    structure_poses,
+)
 from rockflex.structure._outline import ELEMENT_COLORS, SYMBOLS, Stroke
 
 Polyline = Sequence[tuple[float, float]]
@@ -28,10 +34,12 @@ _MAX_WIDE_SPRINGS = 4
 _WIDTH = 0.75  # points of a pixel
 _AT_REST = "#c9ced6"
 HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
+_NARROW, _LINE = 230.0, 11.0  # points in which time and scale have room beside each other, and of a line
 MIN_SPRING, MAX_SPRING = 14.0, 60.0  # points of a spring that is unloaded
 _MAX_FRAMES_SEARCHED = 200  # of which the extent of a structure is taken
 _ASIDE = 1.8  # reach to one side over that to the other, beyond which a structure is not drawn in the middle
 _INK = "#404040"
+_STILL = 1e-9  # speed of a response, at which no impact is marked after its instant
 _FADING = 0.62  # opacity of white over times after the cursor
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, shape (height, width, 3)."""
@@ -218,10 +226,11 @@ class StructurePanel:
         self._turn = figures.axis_unit("rotation", usual="mrad")
         width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
         axes.set(xlim=(0.0, width), ylim=(0.0, height))
-        cell = width / len(curves)
+        cell, narrow = width / len(curves), width < _NARROW
+        head = HEAD + _LINE * narrow
         extents = [structure_extent(each, amplification) for each in poses]
         sprung = any(each.sprung for each in poses)
-        zoom, depth = _stage_zoom(extents, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
+        zoom, depth = _stage_zoom(extents, cell - 2.0 * EDGE, height - head - FOOT, sprung=sprung)
         self._structures: list[StructureArtists] = []
         self._texts: list[tuple[Artist, Artist]] = []
         for place, (curve, each, extent) in enumerate(zip(curves, poses, extents, strict=True)):
@@ -232,7 +241,7 @@ class StructurePanel:
             )
             self._structures.append(StructureArtists(axes, each, curve.style.color, here, amplification))
             axes.text(
-                middle, height - HEAD + 8.0, curve.label, color=curve.style.color, ha="center", weight="bold",
+                middle, height - head + 8.0, curve.label, color=curve.style.color, ha="center", weight="bold",
                 fontsize=9.0, wrap=False,
             )  # fmt: skip
             state = axes.text(middle, 17.0, "", ha="center", fontsize=8.0, animated=True)
@@ -240,10 +249,10 @@ class StructurePanel:
             self._texts.append((state, number))
         self._time = axes.text(EDGE, height - 10.0, "", fontsize=9.0, color="black", animated=True)
         axes.text(
-            width - EDGE,
-            height - 10.0,
+            EDGE if narrow else width - EDGE,
+            height - 10.0 - _LINE * narrow,
             animation_scales_text(amplification, timing.speed),
-            ha="right",
+            ha="left" if narrow else "right",
             fontsize=8.0,
             color=_INK,
         )
@@ -267,6 +276,25 @@ class StructurePanel:
             digits = 2 if self._turn.name == "mrad" else 4
             rotation = f"{poses.rotation[frame] / self._turn.size:.{digits}f}".replace("-", "−")
             number.set(text=f"θ = {rotation} {self._turn.name}" if poses.lifts else "")
+
+
+def draw_structures_at(
+    axes: Axes, curves: Sequence[ResponseCurve], structures: Sequence[Any | None], time: float
+) -> None:
+    """Draw the structures of some responses side by side as they stood at an instant; the axes keep their place."""
+    timing = FrameTiming(np.array([time]), 1.0, 1.0)
+    outlines = [
+        outline_of_response(curve.history, structure, place)
+        for place, (curve, structure) in enumerate(zip(curves, structures, strict=True))
+    ]
+    poses = [
+        structure_poses(curve, outline, timing.times, _STILL) for curve, outline in zip(curves, outlines, strict=True)
+    ]
+    axes.set_axis_off()
+    panel = StructurePanel(axes, curves, poses, timing, default_amplification(curves, poses))
+    panel.show(0)
+    for part in panel.moving:
+        part.set_animated(False)
 
 
 def animation_scales_text(amplification: float, speed: float) -> str:

@@ -1,4 +1,4 @@
-"""What follows the first sheet of a report if asked for: cross-sections with their material, and loops of elements."""
+"""The appendix of a report, if asked for: cross-sections with their material, and loops of elements."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

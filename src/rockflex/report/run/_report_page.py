@@ -12,6 +12,7 @@ from rockflex.foundation.language import Language, chosen_language, use_language
 from rockflex.foundation.shown import shown
 from rockflex.foundation.units import Decimal, SystemName, checked_unit_system, with_decimal_commas
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._suite import Selection
 from rockflex.report.run._comparison_page import comparison_page
 from rockflex.report.run._report_appendix import ReportAppendix
 from rockflex.report.run._report_files import chromium, page_as_pdf, report_as_word, word_module
@@ -43,6 +44,7 @@ def write_report(
     checker: str = "",
     appendix: bool = False,
     limits: CheckLimits | None = None,
+    selection: Selection | None = None,
     units: SystemName = "kN",
     language: Language = "en",
     decimal: Decimal | None = None,
@@ -90,6 +92,9 @@ def write_report(
         base and elements of every run that lifts.
     limits
         Limits of `check`, whose table the page of a run then has for every model. A set has it always.
+    selection
+        The choice of the records of a set: the page then draws their spectra with the target, the range of periods and
+        the first period of the structure.
     units
         Units of tables and figures: ``"kN"`` (kN, kN m or MN m, mm and m, t, g), ``"MN"`` (MN, mm and m, t, g),
         ``"SI"`` (N, m, kg, m/s²) or ``"kip-in"`` (kip, in, kip s²/in, g). Warnings have units of their own.
@@ -134,7 +139,8 @@ def write_report(
     given: dict[str, Any] = {"title": title, "date": date, "notes": notes, "project": project, "author": author}
     given |= {"checker": checker, "structure": structure, "motion": motion, "friction": friction}
     with use_language(language, decimal):
-        page, figures = _page_of_report(responses, units=units, **given, appendix=appendix, limits=limits)
+        given |= {"appendix": appendix, "limits": limits, "selection": selection}
+        page, figures = _page_of_report(responses, units=units, **given)
         if target.suffix.lower() == ".docx":
             from rockflex.plot._figures import figure_as_png
 
@@ -169,6 +175,7 @@ def _page_of_report(
     checker: str = "",
     units: SystemName = "kN",
     omitted: Collection[str] = (),
+    selection: Selection | None = None,
     **options: Any,
 ) -> tuple[ReportPage, Figures]:
     """Return the contents of a report, and its figures; `options` are those of its kind."""
@@ -177,14 +184,16 @@ def _page_of_report(
     texts = checked_report_texts(title, date, notes, project, author, checker)
     system = checked_unit_system(units)
     given = {name: value for name, value in options.items() if value is not None and value is not False}
+    given |= {} if selection is None else {"selection": selection}
     with figures_in_units(system):
         if isinstance(responses, RecordSet):
-            _refuse_unused_options("a set", given, ("structure", "limits"))
+            _refuse_unused_options("a set", given, ("structure", "limits", "selection"))
             page, figures = set_page(responses, texts, system, **given)
         elif isinstance(responses, Comparison):
             _refuse_unused_options("a comparison", given, ("sets", "checks"))
             page, figures = comparison_page(responses, texts, system, **given)
         else:
+            _refuse_unused_options("runs", given, options)
             page, figures = run_page(responses, texts, system, omitted=omitted, **options)
     return _with_decimal_commas(page) if chosen_language()[1] == "," else page, figures
 

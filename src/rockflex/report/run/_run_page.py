@@ -135,7 +135,9 @@ def figures_of_runs(page: OneSheet, record: ReportedRecord, report: ReportedRuns
     from rockflex.plot._run_sheet import draw_record_strip, draw_run_sheet
 
     strip = draw_record_strip(record.time, record.acceleration, width=STRIP[0], height=STRIP[1])
-    sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
+    sheet = draw_run_sheet(
+        report.responses, report.labels, report.structure, width=WIDTH / page.scale, height=page.figure_height
+    )
     return {
         "strip": (translated("Ground acceleration"), strip),
         "sheet": (translated("Histories and loops of all models"), sheet),

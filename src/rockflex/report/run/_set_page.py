@@ -1,12 +1,15 @@
 """The report of a set of records: peaks by record, statistics, values for design, and checks against limits."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from rockflex.foundation.checks import checked_instance
 from rockflex.foundation.language import translated
 from rockflex.foundation.shown import shortened
 from rockflex.foundation.units import UnitSystem
+from rockflex.motion._suite import Selection
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import (
     DAGGER,
@@ -22,8 +25,10 @@ from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, Rep
 from rockflex.response._limit_checks import CheckLimits, check
 from rockflex.response._outputs import DEMANDS_BY_RECORD, OUTPUTS, legend
 from rockflex.response._record_set import RecordSet
+from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import structure_warnings
 
+TARGET_SIZE = (7.2, 3.6)  # in
 STATISTIC_HEADS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
 
 
@@ -44,6 +49,12 @@ class SetPage(ReportPage):
     reasons: Sequence[str]
     limits: ReportTable
     missing: str
+    with_target: bool
+
+    @property
+    def drawn(self) -> list[Drawing]:
+        """The places of the figures."""
+        return [*([Drawing("target")] if self.with_target else []), Drawing("peaks")]
 
     @property
     def sections(self) -> list[tuple[str, Sequence[Block]]]:
@@ -52,7 +63,7 @@ class SetPage(ReportPage):
         return [
             (translated("Structure: {kind}", kind=self.kind), [self.facts, self.modes]),
             *ground,
-            (translated("Records: {model}", model=self.model), [self.records, self.fell or None, Drawing("peaks")]),
+            (translated("Records: {model}", model=self.model), [self.records, self.fell or None, *self.drawn]),
             (translated("Values for design"), [self.statistics, *self.reasons]),
             (translated("Checks"), [self.limits, self.missing]),
         ]
@@ -65,8 +76,9 @@ def set_page(
     *,
     structure: Any = None,
     limits: CheckLimits | None = None,
+    selection: Selection | None = None,
 ) -> tuple[SetPage, Figures]:
-    """Return the page of a set of records, and its figure."""
+    """Return the page of a set of records, and its figures; with `selection` that of the target, too."""
     from rockflex.plot._record_set import plot_set
 
     first = checked_reported_runs(found.responses[0], structure, None, units)
@@ -93,9 +105,24 @@ def set_page(
             [translated("demand" if found.rule is None else "demand for design")], [checks], units
         ),
         missing=missing_checks_text(checks),
+        with_target=selection is not None,
         warnings=[*structure_warnings(known), *found.warnings],
     )
-    return page, {"peaks": (translated("Peaks of each record, and their statistics"), plot_set(found))}
+    figures: dict[str, tuple[str, Any]] = {
+        "peaks": (translated("Peaks of each record, and their statistics"), plot_set(found))
+    }
+    if selection is not None:
+        figures["target"] = _target_figure(checked_instance("selection", selection, Selection), found.properties)
+    return page, figures
+
+
+def _target_figure(selection: Selection, p: RockingProperties) -> tuple[str, Any]:
+    """Return the spectra of the records with their target and the first period, and what they show."""
+    from rockflex.plot._motion import plot_selection
+
+    first = 2.0 * math.pi / float(p.omega[0]) if p.n_modes else None
+    said = translated("Spectra of the records as chosen for their target")
+    return said, plot_selection(selection, period=first, size=TARGET_SIZE)
 
 
 def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:

@@ -1,4 +1,4 @@
-"""What the pages of all reports have in common: head and foot, texts, room on a sheet, and how they become HTML."""
+"""The common parts of all reports: head and foot, texts, room on a sheet, and how they become HTML."""
 
 import math
 import re

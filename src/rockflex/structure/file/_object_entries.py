@@ -11,7 +11,7 @@ from rockflex.structure.file._object_tables import CLASS, arguments_in_table
 from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_tables import PROFILES
 
-_WRAPPERS = ("Restrained", "Eccentric", "Leaning", "OneSided", "YieldingStories")
+_WRAPPERS = ("Restrained", "Eccentric", "Jointed", "Leaning", "OneSided", "Podium", "YieldingStories")
 
 
 def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
 
 def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
     name: str = table[CLASS]
-    inner = _entry_of_object_table(table["structure"]) if name in _WRAPPERS else {}
+    inner = _entry_of_object_table(table["structure"]) if name in _WRAPPERS and "structure" in table else {}
     rest: dict[str, Any] = arguments_in_table({key: each for key, each in table.items() if key != "structure"})
     rest.pop("elements", None)
     held = [{"kind": _kind_made(ELEMENTS, each), **arguments_in_table(each)} for each in table.get("elements", [])]
@@ -49,6 +49,10 @@ def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
         inner["leaning_masses"] = rest["masses"]
     elif name == "YieldingStories":
         inner["stories"] = rest
+    elif name == "Jointed":
+        inner["joints"] = {f"{key}s": [each[key] for each in rest["joints"]] for key in ("height", "half_width")}
+    elif name == "Podium":
+        inner["podium" if inner else "rocking_frame"] = rest if inner else _frame_of_podium(rest)
     elif name == "OneSided":
         inner["one_sided"] = rest
     elif name == "RockingProperties" and _is_block(rest):
@@ -62,9 +66,15 @@ def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
                 z, rest[key] = rest[key]
                 if rest.setdefault("z", z) != z:
                     raise ValueError("a beam whose quantities vary at other heights each")
-        left = ("floors", *([] if rest.get("stories") else ["stories"]))
+        left = ("floors", "joints", "columns", *([] if rest.get("stories") else ["stories"]))
         inner[_kind_made(KINDS, table)] = {key: each for key, each in rest.items() if key not in left}
     return inner
+
+
+def _frame_of_podium(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the table of a podium without a building."""
+    kept = {key: given[key] for key in ("n_columns", "column_width", "column_height", "column_mass")}
+    return kept | {"cap_mass": given.get("slab_mass", 0.0)}
 
 
 def _kind_made(tables: Mapping[str, Any], table: dict[str, Any]) -> str:

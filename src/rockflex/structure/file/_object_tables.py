@@ -14,7 +14,9 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.registry import registered_objects
 from rockflex.foundation.shown import shortened, shown
 from rockflex.structure._attachment import YieldingStory
+from rockflex.structure._joint import JointAbove
 from rockflex.structure._participation import MassNormalisedModes
+from rockflex.structure._pivot import OnColumns
 
 CLASS = "class"
 
@@ -135,7 +137,7 @@ def structure_from_table(table: Mapping[str, Any], place: str) -> Any:
 @cache
 def structure_classes() -> dict[str, type]:
     """Return the classes of structures, their parts and their grounds by name, with those of installed packages."""
-    found = [*vars(rockflex.structure).values(), MassNormalisedModes, YieldingStory]
+    found = [*vars(rockflex.structure).values(), MassNormalisedModes, YieldingStory, JointAbove, OnColumns]
     found += [each for group in ("structures", "elements") for each in registered_objects(group).values()]
     return {each.__name__: each for each in found if isinstance(each, type) and is_dataclass(each)}
 

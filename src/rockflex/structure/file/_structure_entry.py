@@ -14,9 +14,11 @@ from rockflex.foundation.schema import Eccentricity
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
+from rockflex.structure._jointed import Jointed, joints_at
 from rockflex.structure._leaning import Leaning
 from rockflex.structure._one_sided import OneSided
 from rockflex.structure._outline import has_shapes
+from rockflex.structure._podium import Podium
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import Eccentric, Restrained, Structure
 from rockflex.structure._yielding_stories import YieldingStories
@@ -27,10 +29,14 @@ from rockflex.structure.file._toml_table import TomlTable, table_of
 _TABLE_KEY = Described("a table", form=PLAIN)
 if TYPE_CHECKING:
     StoriesTable = TomlTable
+    JointsTable = TomlTable
     OneSidedTable = TomlTable
+    PodiumTable = TomlTable
 else:
     StoriesTable = table_of(YieldingStories, TomlTable, __name__)
+    JointsTable = table_of(joints_at, TomlTable, __name__)
     OneSidedTable = table_of(OneSided, TomlTable, __name__)
+    PodiumTable = table_of(Podium, TomlTable, __name__)
 
 
 KINDS: dict[str, type[StructureTable]] = STRUCTURES | {
@@ -66,6 +72,10 @@ class StructureEntry(_OfKinds):
         In kg, of each floor; None if all mass stands on the base.
     stories : StoriesTable or None
         None if no story yields.
+    podium : PodiumTable or None
+        None if no columns rock under it.
+    joints : JointsTable or None
+        None if it rocks at its base alone.
     eccentricity : float or None
         In m; None in the middle of the base.
     one_sided : OneSidedTable or None
@@ -83,6 +93,14 @@ class StructureEntry(_OfKinds):
     stories: Annotated[
         StoriesTable | None,
         Described("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
+    ] = None
+    podium: Annotated[
+        PodiumTable | None,
+        Described("a table", label="Podium", form=PLAIN, page="columns under it that rock together"),
+    ] = None
+    joints: Annotated[
+        JointsTable | None,
+        Described("a table", label="Joints above the base", form=PLAIN, page="where it rocks besides its base"),
     ] = None
     eccentricity: Eccentricity = None
     one_sided: Annotated[
@@ -144,6 +162,10 @@ class StructureEntry(_OfKinds):
             built = _wrapped("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
         if (stories := self.stories) is not None:
             built = _wrapped("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
+        if (podium := self.podium) is not None:
+            built = _wrapped("podium", lambda: Podium(_floors_of(built), **podium.model_dump()))
+        if (joints := self.joints) is not None:
+            built = _wrapped("joints", lambda: Jointed(_floors_of(built), joints_at(**joints.model_dump())))
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
@@ -205,6 +227,8 @@ class StructureEntry(_OfKinds):
         """Return the values of the structure's table, and everything else that is given, but for the name."""
         more: dict[str, Any] = {} if self.leaning_masses is None else {"leaning_masses": self.leaning_masses}
         more |= {"stories": self.stories.model_dump()} if self.stories else {}
+        more |= {"podium": self.podium.model_dump()} if self.podium else {}
+        more |= {"joints": self.joints.model_dump()} if self.joints else {}
         more |= {"eccentricity": self.eccentricity} if self.eccentricity else {}
         more |= {"one_sided": self.one_sided.model_dump()} if self.one_sided else {}
         more |= {"elements": [each.describe() for each in self.elements]} if self.elements else {}
@@ -214,8 +238,9 @@ class StructureEntry(_OfKinds):
 def _floors_of(built: Built) -> Structure:
     if isinstance(built, RockingProperties):
         raise InputError(
-            "Leaning masses and stories that yield need floors, which a [properties] or [block] table does not have. "
-            "Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key leaning_mass.",
+            "Leaning masses, stories that yield, podiums and joints need floors, which a [properties] or [block] table "
+            "does not have. Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key "
+            "leaning_mass.",
             field="structure",
         )
     return built
@@ -225,6 +250,6 @@ def _wrapped(key: str, make: Callable[[], Built]) -> Built:
     try:
         return make()
     except InputError as error:
-        place = f"[{key}]" if key in ("stories", "one_sided") else key
+        place = f"[{key}]" if key in ("stories", "podium", "joints", "one_sided") else key
         inner = key if error.field in ("", "masses", "structure") or key == "leaning_masses" else f"{key}.{error.field}"
         raise InputError(str(error), place=place, field=inner) from error

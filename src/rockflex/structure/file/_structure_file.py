@@ -29,10 +29,12 @@ def read_structure(path: str | Path) -> Built:
     "multilinear_bar" (`MultilinearBar`), or the name that another package registers (`ElementLaw`). In place of a
     ``position`` an element takes ``between`` (two floors) or the ``height`` of a tie, with a ``cosine`` (`Attachment`).
     ``leaning_masses`` above all tables is mass on other columns (`Leaning`), a table ``[stories]`` with ``strengths``
-    and ``post_yield_ratio`` makes stories yield (`YieldingStories`), and a number ``eccentricity`` moves the structure
-    from the middle of its base (`Eccentric`). A table ``[one_sided]`` with ``restitution`` and ``side`` puts a wall
-    behind it (`OneSided`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file. A
-    file of a `Project` has the key ``class`` above all tables, the name of the class, and its arguments.
+    and ``post_yield_ratio`` makes stories yield (`YieldingStories`), a table ``[joints]`` with ``heights`` and
+    ``half_widths`` adds joints above the base (`Jointed`), and a number ``eccentricity`` moves the structure from the
+    middle of its base (`Eccentric`). A table ``[podium]`` puts columns under it that rock together (`Podium`), and a
+    table ``[one_sided]`` with ``restitution`` and ``side`` a wall behind it (`OneSided`). Units are kg, m, s, N and
+    rad; paths of matrices are relative to the folder of the file. A file of a `Project` has the key ``class`` above
+    all tables, the name of the class, and its arguments.
 
     Parameters
     ----------

@@ -134,7 +134,7 @@ def designs_of_structure(
 
 
 def facts_of_design(p: RockingProperties) -> dict[str, float]:
-    """What describes the base and the tendons of a design, by the names of columns."""
+    """The numbers that describe the base and the tendons of a design, by the names of columns."""
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     return {
         "half_width": p.half_width,
@@ -198,7 +198,7 @@ class DesignSearch:
     half_widths : tuple of float
         B in m, or a range as a dictionary of `smallest`, `largest` and `count`.
     tendon_factors, dissipator_factors : tuple of float
-        Factors on all tendons, and on all yielding dissipators and friction dampers; or a range.
+        Factors on all tendons, and on all fuses and friction dampers; or a range.
     tendon_scaling : {"size", "force"}
         What `tendon_factors` multiply: ``"size"``, the initial force, stiffness and yield force, as of a larger
         cross-section at the same stress; ``"force"``, the initial force alone.
@@ -332,7 +332,7 @@ class DesignSearch:
         """Raise an InputError if factors are given for elements that the structure lacks."""
         tendons = any(each.prestressed for each in properties.elements)
         dissipators = any(each.dissipator_force is not None for each in properties.elements)
-        names = {"tendon": tendons, "yielding dissipator or friction damper": dissipators}
+        names = {"tendon": tendons, "fuse or friction damper": dissipators}
         for factors, (name, known) in zip(FACTORS, names.items(), strict=True):
             if getattr(self, factors) != (1.0,) and not known:
                 raise InputError(
@@ -361,7 +361,7 @@ def element_moved_with_base_edges(
 
 
 def total_dissipator_force(properties: RockingProperties) -> float:
-    """ΣF_y of all yielding dissipators and friction dampers in N."""
+    """ΣF_y of all fuses and friction dampers in N."""
     return sum(each.dissipator_force or 0.0 for each in properties.elements)
 
 

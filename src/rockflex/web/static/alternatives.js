@@ -4,10 +4,9 @@
 import { isRigid, yields } from "./choices.js";
 import { clone, decode, h, latest, number, scrolled, symbol, tableOf } from "./dom.js";
 import { kindOf } from "./drawn.js";
-import { select, trouble } from "./form.js";
-import { downloads, reports, Study } from "./jobs.js";
+import { trouble } from "./form.js";
+import { downloads, reports } from "./jobs.js";
 import { legend } from "./marks.js";
-import { keyOfSet, WORDS_OF_SET } from "./set.js";
 import { t, written } from "./texts.js";
 import { unitFor } from "./units.js";
 
@@ -68,12 +67,13 @@ function underSet(app, { columns, demands, records }) {
       const found = each.checks.find((one) => one.name === name && one.ratio !== null);
       return h("td", { "data-name": each.name, "data-value": found?.ratio, class: found?.ok === false ? "overturned" : null }, found ? `${number(found.ratio, 3)} ${found.ok ? t("ok") : t("fails")}` : "–");
     })));
-  return [h("p", { class: "hint" }, t("Checks with their ratios, and values for design of {n} records; in brackets: compared with {first}.", { n: records, first: first.name })),
+  return [h("h2", {}, t("Alternatives")), h("p", { class: "hint" }, t("Checks with their ratios, and values for design of {n} records; in brackets: compared with {first}.", { n: records, first: first.name })),
     scrolled(t("Alternatives under the set of records"), {}, tableOf([t("demand"), ...columns.map(({ name, present }) => (present ? t("{name} (present)", { name }) : name === "fixed" ? t("fixed base") : name))],
       [...facts, ...checks, ...rows]))];
 }
 
-// `show` gets the responses of the kept ones, each with its structure and its look; `own` if there is a set of records only here.
+// `show` gets the responses of the kept ones, each with its structure and its look. They are kept, named and compared under one
+// record where they are the tab's `own`, and elsewhere under the set of records.
 export function alternatives(app, show, own = false) {
   const { alternatives: most } = app.about.limits;
   const put = (kept) => app.change({ alternatives: kept });
@@ -85,13 +85,10 @@ export function alternatives(app, show, own = false) {
   const element = h("section", { id: "alternatives", "aria-label": t("Alternatives") });
   const files = downloads(app, reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")));
   const under = h("div", { id: "under-set" });
-  const choice = select("compared", t("Compared under"), [["", t("the one record of the page")], ["set", t("the set of records")]], "",
-    (value) => app.change({ record_set: { shown: value === "set" } }));
-  const study = own ? new Study(app, "record_set", { results: under, show: set, words: WORDS_OF_SET, example: () => null, key: () => keyOfSet(app) }) : null;
-  const asked = h("div", {}, study?.element, study?.downloads(reports(app, "comparison", t("Report of all (HTML)"), t("Report of all (PDF)")), []));
-  const one = h("div", {}, table, hint, files);
-  element.append(h("h2", {}, t("Alternatives")),
-    h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), own ? choice : "", one, own ? asked : "", under);
+  const next = app.next("response", t("They are compared under a set of records as well, with checks."), { record_set: { shown: true } }, t("Set of records"));
+  const managed = h("div", {}, h("h2", {}, t("Alternatives")),
+    h("div", { "data-path": "alternatives" }, h("div", { class: "buttons" }, keep), list, trouble()), table, hint, files, next);
+  element.append(own ? managed : under);
 
   // Show what an answer about the set says of them.
   function set({ ready, compared }) {
@@ -130,7 +127,7 @@ export function alternatives(app, show, own = false) {
   };
 
   const load = latest(async () => {
-    const { tab, cloud, design, target, head, ...rest } = app.state;
+    const { tab, cloud, design, target, head, site, record_set, ...rest } = app.state;
     const key = JSON.stringify(rest);
     if (key === shown) return;
     const kept = rest.alternatives;
@@ -167,13 +164,9 @@ export function alternatives(app, show, own = false) {
       list.replaceChildren(...kept.map(row));
       controls()[at]?.focus();
     }
-    const { shown: many } = app.state.record_set;
-    choice.hidden = !kept.length;
-    choice.setValue(many ? "set" : "");
-    one.hidden = many;
-    under.hidden = asked.hidden = !many || !kept.length;
-    if (many && own && kept.length) study.refresh();
-    if (!many || own) load();
+    next.hidden = !kept.length;
+    under.hidden = !kept.length;
+    if (own || !app.state.record_set.shown) load();
   }
-  return { element, refresh, set, close: (runs) => study?.close(runs) };
+  return { element, refresh, set };
 }

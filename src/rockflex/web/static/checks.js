@@ -38,6 +38,28 @@ export function worstCheck({ rows }) {
   return { name: worst.name, fails: worst.ok === false, text: worst.ok === false ? t("{check} fails, {ratio}", values) : t("{check} is closest to its limit, {ratio}", values) };
 }
 
+// A verdict in a line, coloured: sentences, and the checks, of which the worst is a link; `see(name)` shows that check.
+export function verdictOf(element, sentences, { rows }, { overturns, see }) {
+  const worst = worstCheck({ rows });
+  const fails = rows.filter(({ ok }) => ok === false).length;
+  const link = worst && h("a", { href: "#", id: "worst", "data-worst": worst.name, class: worst.fails ? "overturned" : null, onclick: (event) => {
+    event.preventDefault();
+    see(worst.name);
+  } }, worst.fails || worst.name !== "rotation" ? worst.text : t("No check fails")); // of the rotation a sentence tells already
+  const more = fails > 1 ? t("{n} checks fail.", { n: fails }) : "";
+  element.classList.toggle("bad", overturns || fails > 0);
+  element.classList.toggle("good", !overturns && !fails);
+  element.replaceChildren(h("b", { class: overturns ? "overturned" : null }, sentences[0]), ` ${sentences.slice(1).join(" ")} ${more} `, ...(link ? [link, "."] : []));
+}
+
+// Show a check in its table.
+export function seeCheck(root, name) {
+  const row = root.querySelector(`[data-check="${CSS.escape(name)}"]`);
+  const table = row?.closest(".scroll");
+  table?.scrollIntoView({ block: "center" });
+  table?.focus({ preventScroll: true });
+}
+
 // The heading and the table of the checks of `of`.
 export function checksTable({ rows, missing, unlimited }, of) {
   const head = [t("check"), t("result"), t("demand"), t("limit"), t("ratio"), t("source of the limit, or what happens")];

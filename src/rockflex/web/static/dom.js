@@ -110,9 +110,15 @@ export function tooLarge({ name, size }, most) {
   return t("{name} has {size} MB, but the page takes {most} MB at most.", { name, size: written((size / 1e6).toFixed(1)), most: most / 1e6 });
 }
 
-// A table with a heading for each column.
+// A table with a heading for each column, and a button that copies it for a spreadsheet.
 export function tableOf(head, rows, attributes = {}) {
-  return h("table", attributes,
+  const copy = h("button", { type: "button", class: "copy", onclick: async () => {
+    const cells = [...copy.closest("table").rows].map((row) => [...row.cells].map((each) => each.innerText.replace(/\s+/g, " ").trim()).join("\t"));
+    const done = await navigator.clipboard.writeText(cells.join("\n")).then(() => true, () => false);
+    copy.textContent = done ? t("Copied") : t("Copying is not allowed");
+    setTimeout(() => (copy.textContent = t("Copy the table")), 2000);
+  } }, t("Copy the table"));
+  return h("table", attributes, h("caption", {}, copy),
     h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))), h("tbody", {}, rows));
 }
 

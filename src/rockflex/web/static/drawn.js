@@ -1,12 +1,14 @@
 // The first drawing: a structure that rocks, with handles that are its form, three numbers and the few inputs that matter.
 
 import { attempt, get } from "./api.js";
+import { Chart } from "./chart.js";
+import { verdictOf } from "./checks.js";
 import { explained } from "./choices.js";
 import { clone, decode, h, latest, number } from "./dom.js";
 import { ambiguous, box, select, slider } from "./form.js";
 import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
-import { eachNumber, inUnit, outputInUnit } from "./units.js";
+import { eachNumber, inUnit, outputInUnit, titled, unit } from "./units.js";
 
 const CURVES = ["t", "rotation", "points", "uplifted", "slip", "heave", "left_edge", "right_edge"];
 const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height", rocking_frame: "column_height" };
@@ -14,6 +16,7 @@ const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", 
 const LEAD = 3; // s before the largest rotation at which the drawing begins to move
 const FAR_FIELD = "fema-p695-far-field";
 const SELDOM = 200; // ms between two values of a text field during a drag: browsers inspect the form after each
+const MEASURED = 24; // px below the handles, for the width
 const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
 const touched = matchMedia("(max-width: 900px), (pointer: coarse)");
 const size = () => (touched.matches ? 26 : 16); // px of a handle, as in style.css
@@ -70,9 +73,9 @@ function handles(app, view) {
   const stood = springs ? (springs.positions ?? within) : [];
   const reach = Math.max(0, ...[...places, ...(springs?.positions ?? [])].map((x) => Math.abs(x + e)));
   const found = [];
-  if (B?.value > 0) found.push({ name: "B", label: t("Half width of the base"), value: B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
-    at: [B.value - e, 0],
-    next: (v) => ({ structure: B.set(v) }) });
+  if (B?.value > 0) found.push({ name: "B", label: t("Width of the base"), value: 2 * B.value, range: [2 * Math.max(B.value / 4, reach), 8 * B.value],
+    at: [B.value - e, 0], times: 2,
+    next: (v) => ({ structure: B.set(v / 2) }) });
   if (H?.value > 0) found.push({ name: "H", label: t("Height"), up: true, value: H.value, range: [H.value / 4, 4 * H.value],
     at: [0, H.value],
     next: (v) => ({ structure: H.set(v) }) });
@@ -111,7 +114,8 @@ function spread(found, stage) {
 
 // `load(quick)` asks for another response; `settle()` is called once a change is over.
 export function drawing(app, settle) {
-  const player = new Player(() => {}, app.about, { height: 400, room: 1.3, loop: true });
+  const shaking = new Chart({ label: t("Ground acceleration over time"), yLabel: titled("a_g [{unit}]", "acceleration"), height: 84, xName: "t [s]", symmetric: true, onpick: (time) => player.go(time) });
+  const player = new Player((time) => shaking.setCursor(time), app.about, { height: 430, room: 1.22, loop: true, measured: true });
   const { stage } = player;
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dots = new Map(); // by the name of their handle
@@ -121,12 +125,12 @@ export function drawing(app, settle) {
 
   // Below the drawing, for rows of handles.
   function makeRoom() {
-    stage.under = Math.max(...(view ? handles(app, view) : []).map(({ row = 0 }) => row * (size() + 2) + size() / 2), UNDER);
+    stage.under = Math.max(...(view ? handles(app, view) : []).map(({ row = 0 }) => row * (size() + 2) + size() / 2 + MEASURED), UNDER);
   }
   touched.addEventListener("change", makeRoom);
 
   function act(handle, value, live) {
-    const put = clamp(tidy(value), handle.range);
+    const put = clamp(handle.range.find((end) => Math.abs(value - end) < 1e-9) ?? tidy(value), handle.range); // to the very end
     app.change(handle.next(put), live);
     place();
   }
@@ -143,7 +147,7 @@ export function drawing(app, settle) {
       onpointermove: (event) => {
         if (!element.hasPointerCapture(event.pointerId)) return;
         const moved = held.up ? held.from[1] - event.clientY : event.clientX - held.from[0];
-        act(held, held.value + moved / held.zoom, true);
+        act(held, held.value + ((held.times ?? 1) * moved) / held.zoom, true);
       },
       onlostpointercapture: () => {
         held = null;
@@ -192,6 +196,7 @@ export function drawing(app, settle) {
       element.textContent = sign;
       const length = inUnit(value, "length", 3);
       element.title = `${label}: ${length}`;
+      element.dataset.value = length; // shown while it is dragged
       const said = {
         label, valuenow: tidy(value), valuemin: tidy(range[0]), valuemax: tidy(range[1]), valuetext: length,
         orientation: up ? "vertical" : "horizontal",
@@ -203,8 +208,9 @@ export function drawing(app, settle) {
 
   const figures = h("dl", { class: "values three", id: "three" });
   const note = h("p", { class: "hint", hidden: true });
-  const verdict = h("p", { class: "answer", id: "rocks", role: "status" });
-  stage.element.after(verdict, figures, note);
+  const verdict = h("p", { class: "answer", id: "rocks" });
+  const said = h("p", { class: "hidden", role: "status" }); // the verdict and the three numbers, once a change is over
+  stage.element.after(shaking.element, verdict, figures, said, note);
   // What is shown is not of the present state.
   const stale = (on) => [stage.canvas, verdict, figures].forEach((each) => each.classList.toggle("stale", on));
   const quick = few(app, () => view, settle, stale);
@@ -213,21 +219,19 @@ export function drawing(app, settle) {
   function set(run, of) {
     note.hidden = !run.note;
     note.textContent = run.note ?? "";
-    figures.hidden = verdict.hidden = Boolean(run.note);
+    figures.hidden = verdict.hidden = shaking.element.hidden = Boolean(run.note);
     if (run.note) return;
     const first = !view;
     const [m] = run.models;
-    for (const name of CURVES) m[name] = m[name] && decode(m[name]);
+    for (const each of [m, run.twin ?? {}]) for (const name of CURVES) each[name] = each[name] && decode(each[name]);
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
+    stage.twin = run.twin && { ...view, models: [run.twin] };
+    if (run.accelerogram) shaking.set({ xRange: [0, view.end], series: [{ x: decode(run.accelerogram.t), y: decode(run.accelerogram.a).map((a) => a / unit("acceleration").size), color: "muted", width: 1, label: t("acceleration") }] });
     makeRoom();
     player.set(view);
     place();
     figures.replaceChildren(...three(m, run));
-    const over = m.status === "overturned" || m.peaks.max_rotation > run.nominal;
-    verdict.dataset.status = m.status;
-    verdict.classList.toggle("overturned", over);
-    verdict.textContent = m.status === "overturned" ? t("It overturns.") : m.status !== "rocking" ? t("It does not rock.")
-      : t("It rocks, up to {share} of the limit of the rotation.", { share: inUnit(m.peaks.max_rotation / run.nominal, "share", 3) });
+    tellVerdict(m, run);
     const now = performance.now();
     if (!stage.held || now - told > SELDOM) {
       told = now;
@@ -239,16 +243,35 @@ export function drawing(app, settle) {
     resume();
   }
 
+  // Whether it rocks, how near to the limit, its base moment, and the checks, which only a whole answer has.
+  function tellVerdict({ status, peaks }, { nominal, fixed_base_moment: fixed, checks }) {
+    const share = inUnit(peaks.max_rotation / nominal, "share", 3);
+    const sentences = [status === "overturned" ? t("It overturns.") : status === "rocking" ? t("It rocks, up to {share} of the limit of the rotation.", { share }) : t("It does not rock."),
+      fixed && status !== "overturned" ? t("Its base moment is {share} of that with the base held down.", { share: inUnit(peaks.max_base_moment / fixed, "share", 3) }) : ""];
+    verdict.dataset.status = status;
+    verdictOf(verdict, sentences, checks ?? { rows: [] }, { overturns: status === "overturned" || peaks.max_rotation > nominal, see });
+    if (!stage.held) said.textContent = [verdict.textContent, ...[...figures.children].map((each) => each.textContent)].join("; ");
+  }
+
+  // The table of the checks is on the Response tab.
+  function see(name) {
+    app.seen = name;
+    app.change({ record_set: { shown: false } });
+    app.go("response");
+  }
+
   const resume = () => !calm.matches && view && !player.playing && player.toggle();
   globalThis.rockflexDrawn = { player, view: () => view };
   return { player, set, quick, stale, resume, leave: () => player.pause() };
 }
 
+const FORMULAS = { rotation: t("max |θ|"), top: t("max |u + h θ|"), moment: t("max |M_b| / max |M_b| of a fixed base"), share: t("max |θ| / θ_nom") };
+
 // Largest rotation, top displacement, and base moment over that of a fixed base.
 function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff, period: modal, nominal }) {
   const fell = status === "overturned";
   const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
-  const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
+  const one = (key, name, value, help, raw) => h("div", { title: FORMULAS[key] }, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
   const share = fixed ? inUnit(peaks.max_base_moment / fixed, "share", 3) : outputInUnit("max_base_moment", peaks.max_base_moment, 3);
   return [
     one("rotation", t("Largest rotation"), fell ? t("overturns") : outputInUnit("max_rotation", peaks.max_rotation, 3),
@@ -262,6 +285,7 @@ function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displace
   ];
 }
 
+const TIMES = { B: 2 }; // of the measure in its field, which has the full width
 let last = null; // what was measured last, from which a tab made anew goes on
 
 // The few inputs that matter, beside the drawing: they show the state, and what is typed that cannot be in it.
@@ -276,10 +300,10 @@ function few(app, shown, settle, stale) {
     tell(name, found && !(value > 0) && (ambiguous(value) ? t("Is the comma for thousands or for decimals? Write {thousands} or {decimals}.", { thousands: value.replace(",", ""), decimals: value.replaceAll(".", "").replace(",", ".") }) : t("It must be a number above 0.")));
     stale(bad.size > 0);
     if (!found || bad.has(name)) return;
-    app.change({ structure: found.set(value) }, true);
+    app.change({ structure: found.set(value / (TIMES[name] ?? 1)) }, true);
     settle();
   }, { unit, hint, digits: 4 });
-  const fields = { B: field("B", t("Half width of the base, B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
+  const fields = { B: field("B", t("Width of the base, 2 B"), "m"), H: field("H", t("Height"), "m", " "), T: field("T", t("First period, base held down"), "s") };
 
   // Say beside a field why its text cannot be used, until another one is typed or the structure is another.
   function tell(name, said) {
@@ -321,11 +345,13 @@ function few(app, shown, settle, stale) {
     for (const [name, each] of Object.entries(fields)) {
       each.hidden = !found[name];
       if (!found[name] || bad.has(name)) continue;
-      const { value, fields: own } = found[name];
+      const { value: measure, fields: own } = found[name];
+      const value = (TIMES[name] ?? 1) * measure;
+      each.times = TIMES[name];
       each.dataset.also = own.map((key) => `structure.${kind}.${key}`).join(" ");
       each.setValue(each.unit.size === 1 && value > 0 ? tidy(value) : value);
     }
-    fields.H.querySelector(".hint").textContent = found.H?.value > 0 && found.B?.value > 0 ? t("{ratio} times B", { ratio: number(found.H.value / found.B.value, 3) }) : "";
+    fields.H.querySelector(".hint").textContent = found.H?.value > 0 && found.B?.value > 0 ? t("{ratio} times the half width", { ratio: number(found.H.value / found.B.value, 3) }) : "";
   }
   return { element: h("div", { class: "few" }, Object.values(fields), record, scale), refresh };
 }

@@ -3,12 +3,15 @@
 import { h, number, symbol } from "./dom.js";
 import { keep, kept } from "./kept.js";
 import { COMMA, t } from "./texts.js";
-import { fromSI, toSI, unitFor } from "./units.js";
+import { fromSI, inField, toSI, unitFor } from "./units.js";
 
 let serial = 0;
 
-// The range of a number, in words.
-export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
+// The range of a number in the unit `shown`, in words; with `name` it is that of the field of this name, and the numbers are in SI.
+export function between(low, high, shown = "", name = "") {
+  const { size, name: unit } = name ? unitFor(shown, name) : { size: 1, name: shown };
+  return `${t("{low} to {high}", { low: number(low / size), high: number(high / size) })}${unit ? ` ${unit}` : ""}`;
+}
 
 // A field around any control; the server's messages about `path` appear in it. `unit` is that of SI: `element.unit` is shown.
 export function field(path, label, control, { unit = "", hint = "", help = "", name = "" } = {}) {
@@ -82,7 +85,7 @@ function worded(element, text) {
   const label = element.classList.contains("field") ? element.querySelector("label")?.textContent : null;
   const { unit } = element;
   if (label && unit) {
-    const shown = (value) => `${Number.isFinite(Number(value)) ? number(fromSI(Number(value), unit), 6) : value.replace("inf", "∞")} ${unit.name}`.trim();
+    const shown = (value) => `${Number.isFinite(Number(value)) ? number(fromSI((element.times ?? 1) * Number(value), unit), 6) : value.replace("inf", "∞")} ${unit.name}`.trim();
     const [, zero, given] = POSITIVE.exec(text) ?? [];
     if (given) return zero ? t("{field} must be zero or positive, but {value} was given.", { field: label, value: shown(given) })
       : t("{field} must be positive, but {value} was given.", { field: label, value: shown(given) });
@@ -204,7 +207,7 @@ export function tableField(path, spec, value, change) {
       type: many ? null : "text", inputmode: many ? null : "text", spellcheck: "false", autocomplete: "off",
       onchange: () => change(toSI(understood(control, read(spec.type, control.value)), unit)),
     });
-    control.value = write(fromSI(shown, unit));
+    control.value = write(inField(shown, unit));
   }
   const limits = spec.low === null ? "" : between(...fromSI([spec.low, spec.high], unit), unit.name);
   const typed = spec.type !== "flag" && spec.type !== "choice";
@@ -212,7 +215,7 @@ export function tableField(path, spec, value, change) {
   const each = spec.type === "number or list" ? t("one number for all, or a list") : "";
   const hint = [t(spec.help).replace(/\.$/, ""), each, limits, optional].filter(Boolean).join("; ");
   const element = field(path, t(spec.label), control, { unit: spec.unit, name: spec.name, hint });
-  element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, unit)));
+  element.setValue = (v) => document.activeElement !== control && (control.value = write(inField(v, unit)));
   return element;
 }
 
@@ -248,7 +251,7 @@ export function box(path, label, value, change, { many = false, digits, ...extra
     onchange: () => change(toSI(understood(control, many ? list(control.value) : parseNumber(control.value)), element.unit)),
   });
   const element = field(path, label, control, extra);
-  element.setValue = (v) => document.activeElement !== control && (control.value = write(fromSI(v, element.unit, digits)));
+  element.setValue = (v) => document.activeElement !== control && (control.value = write(digits ? fromSI(v, element.unit, digits) : inField(v, element.unit)));
   element.setValue(value);
   return element;
 }
@@ -315,7 +318,7 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
   element.querySelector(".row").prepend(range);
   const say = () => range.setAttribute("aria-valuetext", `${entry.value} ${element.unit.name}`.trim());
   element.setValue = (v) => {
-    if (document.activeElement !== entry) entry.value = write(fromSI(v, element.unit));
+    if (document.activeElement !== entry) entry.value = write(inField(v, element.unit));
     if (document.activeElement !== range) range.value = to(v);
     say();
   };

@@ -91,7 +91,10 @@ export class Study {
   // Update the tab after a change of the state.
   refresh() {
     this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
-    if (!this.token && !this.asked) this.#start(this.example());
+    if (this.app.begin === this.kind) {
+      this.app.begin = null;
+      this.#start(null);
+    } else if (!this.token && !this.asked) this.#start(this.example());
     else if (this.token) {
       this.load(); // again, where an answer for the choices before is on its way
       this.#watch();

@@ -31,6 +31,8 @@ let early = null; // the tab chosen before the state was known
 export const app = {
   about: null,
   state: null,
+  seen: "", // a check that is to be shown once its tab is
+  begin: null, // the kind of study that begins once its tab is shown
   // Change part of the state and update the page; `live` while a handle or slider still moves: browsers take few changes of
   // the address.
   change(patch, live = false) {
@@ -237,7 +239,7 @@ async function open() {
 
 // The tab that has a field.
 const placeOf = (path) => ({ structure: "structure", record: "earthquake", target: "earthquake", cloud: "fragility", design: "design", limits: "response",
-  free_vibration: "response", record_set: "response" })[path.split(".")[0]];
+  free_vibration: "response", record_set: "response", models: "response", impact: "response", restitution: "response", bouc_wen: "response", site: "structure" })[path.split(".")[0]];
 
 // Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
 async function renew(runs) {

@@ -1,7 +1,7 @@
 // A set of records as one result: the peaks of each, their statistics, the value for design, and the checks.
 
 import { Chart } from "./chart.js";
-import { checksTable, worstCheck } from "./checks.js";
+import { checksTable, seeCheck, verdictOf } from "./checks.js";
 import { explained } from "./choices.js";
 import { decode, h, number, scrolled, symbol, tableOf } from "./dom.js";
 import { select } from "./form.js";
@@ -9,7 +9,7 @@ import { assumed, choices, recordsOf, reports, Study } from "./jobs.js";
 import { legend } from "./marks.js";
 import { suitPeriods } from "./tabs/target.js";
 import { counted, t } from "./texts.js";
-import { explainedOutputs, headed, unit } from "./units.js";
+import { explainedOutputs, headed, inUnit, unit } from "./units.js";
 
 const rules = () => [
   ["ec8", t("EN 1998-1: the mean of 7 and more records, the worst of 3 to 6")],
@@ -25,11 +25,11 @@ const statistics = () => [
   ["design", t("for design"), { color: "c1", width: 4.5 }],
 ];
 
-export const WORDS_OF_SET = { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") };
+const WORDS = { run: t("Simulate"), again: t("Simulate again"), none: t("No simulation yet."), changed: t("The input has changed: simulate again.") };
 const modelOf = ({ models, record_set: { model } }) => (models.includes(model) ? model : models[0]);
 
 // What determines the runs of a set, those of the alternatives included.
-export function keyOfSet({ state }) {
+function keyOfSet({ state }) {
   const { record_set: { suites, scale } } = state;
   return JSON.stringify([assumed(state, [modelOf(state)]), recordsOf(state, suites), scale, state.free_vibration, state.alternatives]);
 }
@@ -53,7 +53,7 @@ export function recordSet(app, compared) {
   } }, t("Choose records from 0.2 T₁ to the rocking period")));
   const results = h("div", { class: "results", id: "record-set" }, drawing, beside);
   const study = new Study(app, "record_set", {
-    results, show, words: WORDS_OF_SET, example: () => null, key: () => keyOfSet(app),
+    results, show, words: WORDS, example: () => null, key: () => keyOfSet(app),
   });
   const form = h("fieldset", {}, h("legend", {}, t("Set of records")), suites,
     h("p", { class: "hint" }, t("The records for the target are those of the Earthquake tab, with their factors.")),
@@ -74,8 +74,8 @@ export function recordSet(app, compared) {
     const now = shown.querySelector("select").value || "max_rotation";
     const names = view.demands.map((each) => each.name);
     shown.setOptions(view.demands.map((each) => [each.name, plain(each)]), names.includes(now) ? now : names[0]);
-    const worst = worstCheck(view.checks);
-    head.replaceChildren(...(worst ? [h("b", { class: worst.fails ? "overturned" : null, id: "worst", "data-worst": worst.name }, `${worst.text}. `)] : []), summary(view));
+    const see = (name) => seeCheck(tables, name);
+    verdictOf(head, summary(view), view.checks, { overturns: view.records.some(({ status }) => status === "overturned"), see });
     warned.replaceChildren(...view.warnings.map((text) => h("p", {}, text)), ...(view.short ? [longer] : []));
     warned.hidden = !view.warnings.length;
     drawPeaks();
@@ -127,13 +127,19 @@ export function recordSet(app, compared) {
 export const OF_STANDING = ["max_rotation", "max_top_displacement", "max_total_top_displacement"]; // what one that falls has not
 const plain = ({ symbol: text, unit: name }) => (name ? `${t(text)} [${name}]` : t(text));
 
-function summary({ demands, records, model }) {
+function summary({ demands, records, model, checks, fixed_moment: fixed }) {
   const fell = records.filter((each) => each.status === "overturned").length;
   const rotation = demands.find(({ name }) => name === "max_rotation");
   const values = { model, records: counted(records.length, t("{n} record"), t("{n} records")), fell, value: number(rotation?.design / rotation?.size, 3), unit: rotation?.unit };
-  if (fell) return t("{model} under {records}: the structure overturns in {fell} of them.", values);
-  if (!rotation) return t("{model} under {records}: the base does not turn.", values);
-  return t("{model} under {records}: none overturns the structure; the rotation for design is {value} {unit}.", values);
+  const rocks = records.filter(({ status }) => status === "rocking").length;
+  const first = fell ? t("It overturns in {fell} of {records}.", values)
+    : rocks ? t("It rocks in {rocks} of {records}, and none overturns it.", { ...values, rocks }) : t("It does not rock in any of {records}.", values);
+  const turned = checks.rows.find(({ name }) => name === "rotation");
+  const share = !fell && Number.isFinite(turned?.ratio) && t("its rotation for design is {value} {unit}, {share} of the limit", { ...values, share: inUnit(turned.ratio, "share", 3) });
+  const moment = demands.find(({ name }) => name === "max_base_moment")?.design;
+  const less = moment > 0 && fixed > 0 && t("the base moment {share} of that with the base held down", { share: inUnit(moment / fixed, "share", 3) });
+  const more = [share, less].filter(Boolean).join(", ");
+  return [first, more ? t("{model}: {facts}.", { model, facts: more }) : ""];
 }
 
 function ofDemands({ demands }) {

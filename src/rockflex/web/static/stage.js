@@ -1,31 +1,37 @@
 // The moving structure, with its controls: play, speed, time and amplification.
 
 import { bracket, FONT } from "./axes.js";
-import { color, context, h } from "./dom.js";
+import { color, context, h, number, redrawn, save } from "./dom.js";
 import { depthOf, drawBetween, drawSprings, drawStance, motionOf } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
 import { t, written } from "./texts.js";
-import { unit } from "./units.js";
+import { inUnit, unit } from "./units.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
-const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window
+const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window, and at most
+const SHARE = 0.42; // of the height of the window
+const BESIDE = 46; // px from the base to the dimension of the height
+const TWIN = 0.3; // opacity
+const BARS = [1, 2, 5]; // of the length of a scale bar, times a power of ten
 export const UNDER = 44; // px below the ground, for words or handles
 const GHOST = 0.55; // opacity
 const narrow = matchMedia("(max-width: 900px)");
 
 class Stage {
   // `room` is the height that fits in the drawing, over that of the structure; `symbols` are those of the server.
-  constructor(symbols, { height = 340, room = 1.08 } = {}) {
-    this.canvas = h("canvas", {
+  // With `measured` it has dimensions and a scale bar.
+  constructor(symbols, { height = 340, room = 1.08, measured = false } = {}) {
+    this.canvas = redrawn(h("canvas", {
       tabindex: 0, role: "application", "aria-roledescription": t("animation"), "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
       "aria-label": t("The structure rocking: space plays and pauses, arrow keys step"),
-    });
+    }), () => this.draw());
     this.layer = h("div", { class: "handles" });
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
-    Object.assign(this, { symbols, tall: height, height, room, held: false, under: UNDER }); // held: the scale stays while something is dragged
+    Object.assign(this, { symbols, measured, tall: height, height, room, held: false, under: UNDER }); // held: the scale stays while something is dragged
     this.view = null;
     this.ghosts = []; // other structures that move behind the first model
+    this.twin = null; // the same on a fixed base
     this.time = 0;
     this.amplification = 1;
     new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -81,7 +87,7 @@ class Stage {
   draw() {
     const width = this.canvas.clientWidth;
     if (!width || !this.view) return;
-    this.height = narrow.matches ? Math.min(LOW, this.tall) : this.tall;
+    this.height = narrow.matches ? Math.min(LOW, Math.max(SHARE * innerHeight, LOW / 2), this.tall) : this.tall;
     const g = context(this.canvas, width, this.height);
     const count = this.view.models.length;
     const cell = width / count;
@@ -139,17 +145,73 @@ class Stage {
       g.globalAlpha = 1;
     }
     g.lineJoin = "round";
+    if (this.measured) this.#dimensions(g, to, centre, ground, cell);
+    g.globalAlpha = TWIN;
+    if (this.twin) drawOutline(g, this.twin, this.frameAt(0, this.time, this.amplification, this.twin), path, "fixed");
     g.globalAlpha = GHOST;
     if (index === 0) for (const ghost of this.ghosts) drawOutline(g, ghost, this.frameAt(0, this.time, this.amplification, ghost), path, ghost.models[0].look.color);
     g.globalAlpha = 1;
     drawOutline(g, this.view, frame, path, "structure");
-    for (const { symbol, ends } of this.view.elements) {
-      g.strokeStyle = g.fillStyle = color(symbol);
-      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))));
+    const past = (time) => time !== null && time !== undefined && time <= this.time;
+    const { elements = [], broken = [], stories = [] } = model.yielding ?? {};
+    this.view.elements.forEach(({ symbol, ends }, k) => {
+      g.strokeStyle = g.fillStyle = color(past(broken[k]) ? "error" : past(elements[k]) ? "lost" : symbol);
+      const more = symbol === "tendons" ? 2 : 0; // thin, and often before a column
+      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))), 1, more);
+    });
+    g.strokeStyle = color("lost");
+    g.lineWidth = 5;
+    for (const [floor, time] of stories) {
+      if (!past(time)) continue;
+      path([frame.points[floor - 1], frame.points[floor]]); // a story that has yielded
+      g.stroke();
     }
     if (frame.impact) this.#blow(g, frame, to);
     this.#words(g, model, index, frame, centre, cell - 8);
     g.restore();
+  }
+
+  // Height and width of what stands at rest, a bar of a round length, and how much the motion is amplified.
+  #dimensions(g, to, centre, ground, cell) {
+    const [left, right] = this.edges();
+    const top = this.view.heights.at(-1);
+    const small = cell < 300;
+    g.strokeStyle = g.fillStyle = color("muted");
+    g.font = FONT;
+    g.lineWidth = 1;
+    const lines = [];
+    const [x0, y0] = to([Math.min(left, -this.view.reach), 0]);
+    const [, y1] = to([0, top]);
+    if (!small) {
+      const x = Math.max(centre - cell / 2 + 60, x0 - BESIDE);
+      lines.push([x, y0, x, y1], [x - 4, y0, x + 4, y0], [x - 4, y1, x + 4, y1]);
+      g.textAlign = "right";
+      g.textBaseline = "middle";
+      g.fillText(inUnit(top, "length", 3), x - 6, (y0 + y1) / 2);
+    }
+    const [[a], [b], y] = [to([left, 0]), to([right, 0]), this.height - 9];
+    lines.push([a, y, b, y], [a, y - 4, a, y + 4], [b, y - 4, b, y + 4]);
+    g.textAlign = "left";
+    g.textBaseline = "alphabetic";
+    g.fillText(inUnit(right - left, "length", 3), b + 6, y + 4);
+    const most = Math.min(90, cell / 5) / this.zoom / unit("length").size;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const length = power * BARS.findLast((each) => each * power <= most);
+    const [from, w] = [centre + cell / 2 - 16, length * unit("length").size * this.zoom];
+    if (b + 60 < from - w) {
+      lines.push([from - w, y, from, y], [from - w, y - 4, from - w, y + 4], [from, y - 4, from, y + 4]);
+      g.textAlign = "center";
+      g.fillText(`${number(length)} ${unit("length").name}`, from - w / 2, y - 6);
+    }
+    g.beginPath();
+    for (const [ax, ay, bx, by] of lines) {
+      g.moveTo(ax, ay);
+      g.lineTo(bx, by);
+    }
+    g.stroke();
+    if (this.amplification === 1) return;
+    g.textAlign = "left";
+    g.fillText(t("motion × {n}", { n: number(this.amplification, 2) }), centre - cell / 2 + 10, y + 4, a - centre + cell / 2 - 20);
   }
 
   #blow(g, frame, to) {
@@ -228,6 +290,7 @@ export class Player {
     this.speed = h("select", { id: "speed", "aria-label": t("Speed") },
       SPEEDS.map(([value, text]) => h("option", { value }, text)));
     this.speed.value = "1";
+    const picture = h("button", { type: "button", id: "picture", onclick: () => this.#save() }, t("Save picture"));
     const jump = h("button", {
       type: "button", title: t("Go to the largest rotation"),
       onclick: () => this.view && this.go(this.view.models[0].peaks.time_of_max_rotation),
@@ -246,7 +309,7 @@ export class Player {
     this.stage.canvas.addEventListener("keydown", (event) => this.#key(event));
     this.keys = h("div");
     this.element = h("div", { class: "stage" }, this.stage.element, this.keys,
-      h("div", { class: "buttons" }, this.button, this.speed, jump),
+      h("div", { class: "buttons" }, this.button, this.speed, jump, picture),
       h("div", { class: "buttons time" }, this.scrub, this.clock), this.amplify);
   }
 
@@ -312,6 +375,17 @@ export class Player {
     this.last = now;
     this.move(next >= this.view.end && this.loop ? 0 : next);
     if (this.time >= this.view.end) this.pause();
+  }
+
+  // The drawing on its background, as an image.
+  #save() {
+    const { canvas } = this.stage;
+    const sheet = h("canvas", { width: canvas.width, height: canvas.height });
+    const g = sheet.getContext("2d");
+    g.fillStyle = color("bg");
+    g.fillRect(0, 0, canvas.width, canvas.height);
+    g.drawImage(canvas, 0, 0);
+    sheet.toBlob((blob) => save("rockflex.png", blob));
   }
 
   #key(event) {

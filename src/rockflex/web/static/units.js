@@ -14,14 +14,14 @@ export function setUnits(about, name) {
 // The unit of a kind of quantity; the system "kN" has that of `usual`: accelerations are in m/s² there.
 export const unit = (quantity, usual = quantity === "acceleration" ? "SI" : "kN") => table[system === "kN" ? usual : system][quantity];
 
-// Kinds of quantities of which others have the same unit in SI; rotations that are typed are in rad in every system.
+// Kinds of quantities of which others have the same unit in SI; angles that are no rotations are in rad in every system.
 const KINDS = { m: "length", "N/m²": "elastic modulus", Pa: "stress", rad: "" };
 
-const OF_SOIL = "shear_modulus"; // a field whose usual unit is not that of materials
+const OF_NAME = { shear_modulus: "shear modulus", rotation: "rotation" }; // fields whose usual unit is not that of others with this one
 
 // The unit that is shown for one of SI, of a field of this name.
 export function unitFor(si, name = "") {
-  const quantity = name === OF_SOIL ? "shear modulus" : KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
+  const quantity = OF_NAME[name] ?? KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
   return quantity ? unit(quantity) : { size: 1, name: si };
 }
 
@@ -50,4 +50,12 @@ export function eachNumber(value, change) {
 
 // Without the last digits, which only rounding makes.
 export const fromSI = (value, { size }, digits = 12) => eachNumber(value, (each) => (size === 1 ? each : Number((each / size).toPrecision(digits))));
+// As in a field: what a conversion makes long has four digits, until it is typed.
+const LONG = 1e6; // of the digits of a number as a whole one
+export const inField = (value, own) => {
+  const exact = fromSI(value, own);
+  if (typeof exact !== "number" || own.size === 1) return exact;
+  const digits = exact.toExponential().replace(/e.*|[-.]/g, "");
+  return Number(digits) > LONG ? Number(exact.toPrecision(4)) : exact;
+};
 export const toSI = (value, { size }) => eachNumber(value, (each) => (size === 1 ? each : Number((each * size).toPrecision(15))));

@@ -4,6 +4,7 @@ import { Chart } from "../chart.js";
 import { isRigid, measuresOf, unitOf } from "../choices.js";
 import { h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { measures } from "../drawn.js";
+import { between } from "../form.js";
 import { assumed, choices, recordsOf, Remarks, Study, undecided } from "../jobs.js";
 import { legend, look } from "../marks.js";
 import { t } from "../texts.js";
@@ -22,7 +23,7 @@ export default function designTab(app) {
 
   const limitStates = app.about.limit_states.filter((each) => each.noun);
   const limit = list("limit", t("Limit state"), limitStates.map((each) => [each.name, t(each.noun)]));
-  const rotation = entry("rotation", t("Rotation"), { unit: "rad", hint: t("0.0001 to 1.5") });
+  const rotation = entry("rotation", t("Rotation"), { unit: "rad", name: "rotation", hint: between(1e-4, 1.5, "rad", "rotation") });
   const target = entry("target", t("Acceptable probability"), { hint: t("0.0001 to 0.99") });
   const measure = list("measure", t("Intensity measure"), measuresOf(app.about, false));
   const at = entry("at", t("Intensity"), { unit: unitOf(app.about, choice().measure), hint: t("value of this measure, above 0") });

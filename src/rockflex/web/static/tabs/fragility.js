@@ -1,13 +1,13 @@
 // Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
-import { axisOf, measuresOf, models, unitOf } from "../choices.js";
+import { axisOf, isRigid, measuresOf, models, unitOf } from "../choices.js";
 import { h, number, scrolled, tableOf } from "../dom.js";
-import { select } from "../form.js";
+import { between, select } from "../form.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
 import { t } from "../texts.js";
-import { fromSI, unitFor } from "../units.js";
+import { fromSI, headed, unit, unitFor } from "../units.js";
 
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation are drawn
@@ -20,8 +20,13 @@ export default function fragilityTab(app) {
   const labels = models("cloud.models", choice().models, app.about.limits.models, (value) => put({ models: value }));
   const measure = list("measure", t("Intensity measure"), measuresOf(app.about, true));
   const limitStates = app.about.limit_states;
-  const limit = list("limit", t("Limit state"), limitStates.map((each) => [each.name, t(each.clause)]));
-  const rotation = entry("rotation", t("Rotation"), { unit: "rad", hint: t("0.0001 to 1.5") });
+  const limit = list("limit", t("Limit state"), []);
+  const bounds = {
+    rotation: entry("rotation", t("Rotation"), { unit: "rad", name: "rotation", hint: between(1e-4, 1.5, "rad", "rotation") }),
+    drift: entry("drift", t("Drift over the height"), { hint: t("such as 0.01; of the top, relative to the rotating base") }),
+    residual_drift: entry("residual_drift", t("Drift left over the height of the story"), { hint: t("such as 0.005") }),
+    ductility: entry("ductility", t("Ductility"), { hint: t("largest drift of a story over that at first yield") }),
+  };
   const offered = CONFIDENCES.some(([value]) => value === choice().confidence) ? CONFIDENCES
     : [...CONFIDENCES, [choice().confidence, `${number(100 * choice().confidence)} %`]];
   const confidence = select("cloud.confidence", t("Confidence level of the bands"), offered, choice().confidence,
@@ -29,15 +34,15 @@ export default function fragilityTab(app) {
 
   const curves = new Chart({ label: t("Probability over intensity"), yLabel: t("probability"), height: 320, xName: "IM", xLog: true });
   const cloud = new Chart({
-    label: t("Rotations of the runs over intensity"), yLabel: "θ_max [rad]", height: 280, xName: "IM", xLog: true, yLog: true,
+    label: t("Rotations of the runs over intensity"), yLabel: headed("max_rotation"), height: 280, xName: "IM", xLog: true, yLog: true,
   });
   const keys = h("div");
   const remarks = new Remarks();
   const table = scrolled(t("Fits"), { id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, t("Fragility curves")), keys, curves.element,
-    h("p", { class: "hint" }, t("Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs " +
-      "of similar intensity.")),
+    h("p", { class: "hint" }, t("Lines: fitted curves; bands: their confidence, rising with the intensity as the probability does; circles: observed fraction " +
+      "in groups of runs of similar intensity.")),
     table,
     h("h2", {}, t("All runs")), cloud.element,
     h("p", { class: "hint" }, t("Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom.")),
@@ -55,7 +60,7 @@ export default function fragilityTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, t("Cloud of runs")), suites, scales, labels, study.element),
-      h("fieldset", {}, h("legend", {}, t("Fragility curves")), limit, rotation, measure, confidence)),
+      h("fieldset", {}, h("legend", {}, t("Fragility curves")), limit, Object.values(bounds), measure, confidence)),
     results);
   results.append(study.downloads(
     [["figure", t("Rocking and overturning (SVG)")], ["table", t("Runs (CSV)")]],
@@ -82,14 +87,15 @@ export default function fragilityTab(app) {
         })),
       ],
     });
+    const turn = unit("rotation").size;
     const at = choice().limit === "rotation" ? choice().rotation : null;
     cloud.set({
-      yRange: [1e-5, 2],
+      yRange: [1e-5 / turn, 2 / turn],
       series: all.map((c) => ({
-        kind: "points", x: c.point_im.map((value) => value / size), y: c.point_rotation.map((v) => Math.max(v, FOOT)),
+        kind: "points", x: c.point_im.map((value) => value / size), y: c.point_rotation.map((v) => Math.max(v, FOOT) / turn),
         color: c.look.color, alpha: 0.55, size: 2.2,
       })),
-      hlines: at ? [{ y: at, label: t("limit"), color: "c1" }] : [],
+      hlines: at ? [{ y: at / turn, label: t("limit"), color: "c1" }] : [],
     });
     keys.replaceChildren(legend(all.map((c) => ({ label: c.model, ...c.look }))));
     table.replaceChildren(fits(answer.curves, label, own));
@@ -100,8 +106,11 @@ export default function fragilityTab(app) {
     suites.refresh();
     labels.setValue(choice().models, app.state);
     measure.setValue(choice().measure);
-    limit.setValue(choice().limit);
-    rotation.hidden = choice().limit !== "rotation";
+    const { structure } = app.state;
+    const lacking = [...(isRigid(structure) ? ["drift"] : []), ...(structure.stories ? [] : ["residual_drift", "ductility"])];
+    const offered = limitStates.filter(({ name }) => name === choice().limit || !lacking.includes(name));
+    limit.setOptions(offered.map((each) => [each.name, t(each.clause)]), choice().limit);
+    for (const [name, each] of Object.entries(bounds)) each.hidden = choice().limit !== name;
     study.refresh();
   }
   return { element, refresh, close: (runs) => study.close(runs) };

@@ -3,7 +3,7 @@
 import { alternatives } from "../alternatives.js";
 import { bracket } from "../axes.js";
 import { overTime, withTime } from "../chart.js";
-import { checksTable, limitsForm } from "../checks.js";
+import { checksTable, limitsForm, seeCheck } from "../checks.js";
 import { yields } from "../choices.js";
 import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { select, slider } from "../form.js";
@@ -17,10 +17,12 @@ import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, o
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
+const JOINTS = [1, 2, 3].map((k) => [`joint_${k}`, `{model} ${k}`]);
 const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
 // Name, output, title, height, and the curves of each model where there are several.
 const PANELS = [
   ["rotation", "rotation", t("Rotation"), 150],
+  ["joints", "joint_rotation", t("Rotation of joints above the base"), 118, JOINTS],
   ["slip", "slip", t("Slip of the base"), 118],
   ["edges", "edge_uplift", t("Rise of the edges"), 118, EDGES],
   ["displacement", "total_top_displacement", t("Displacement of the top"), 118],
@@ -32,7 +34,7 @@ const DISPLACEMENTS = [
   ["total_top_displacement", t("relative to the ground")],
   ["top_displacement", t("relative to the rotating base")],
 ];
-const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
+const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force", ...JOINTS.map(([key]) => key)];
 const FORCES = ["base_moment", "base_shear"]; // which a rigid block has not
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
@@ -78,12 +80,11 @@ export default function responseTab(app) {
     draw();
   });
   const saved = project(app);
-  const place = h("div", {}, kept.element); // of the alternatives, which move to the set and back
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
       h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
         "drag or press + and − to zoom; double-click or press Escape to reset."))),
-    h("h2", {}, t("Largest values")), peaks, floors, place, elements.table, checks,
+    h("h2", {}, t("Largest values")), peaks, floors, elements.table, checks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, t("Moment and rotation")), loop.chart.element), elements.chart,
       energy.element));
   const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
@@ -127,6 +128,8 @@ export default function responseTab(app) {
     keys.replaceChildren(legend([...view.models, ...ghosts].map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
     checks.replaceChildren(checksTable(view.checks, first.label));
+    if (app.seen) seeCheck(checks, app.seen);
+    app.seen = "";
     floors.replaceChildren(...(view.floors.length > 1 ? byFloor(view.floors, first.label) : []));
     verdict.textContent = summary(view);
     warned.replaceChildren(...warnings(view));
@@ -193,12 +196,11 @@ export default function responseTab(app) {
       set = recordSet(app, kept.set);
       form.append(set.form);
       element.append(set.results);
+      set.beside.append(kept.element);
     }
     for (const each of [player.element, scale, results]) each.hidden = shown;
     for (const each of set ? [form, set.results] : []) each.hidden = !shown;
     saved.refresh();
-    const beside = shown ? set.beside : place;
-    if (kept.element.parentElement !== beside) beside.append(kept.element);
     kept.refresh();
     if (shown) {
       player.pause();
@@ -265,7 +267,10 @@ function yielding(floors) {
 }
 
 function byFloor(floors, model) {
-  const columns = [...FLOORS, ...YIELDING.filter(([name]) => floors[0][name] !== undefined)];
+  const columns = [...FLOORS, ...YIELDING].filter(([name]) => floors[0][name] !== undefined);
+  if (floors[0].story_drift === undefined)
+    return [h("h2", {}, t("Over the height of {model}", { model })), scrolled(t("Largest values over the height"), { id: "floors" }, tableOf(columns.map(([, text, quantity]) => titled(text, quantity)),
+      floors.map((each) => h("tr", {}, columns.map(([name, , quantity]) => h("td", { "data-name": name, "data-value": each[name] }, valueIn(each[name], quantity)))))))];
   return [h("h2", {}, t("Stories of {model}", { model })), scrolled(t("Largest values by story"), { id: "floors" },
     tableOf([t("Story"), ...columns.map(([, text, quantity]) => titled(text, quantity))], floors.map((each, i) => h("tr", { class: each.ductility > 1 ? "yields" : null },
       h("th", { scope: "row" }, String(floors.length - i)),

@@ -2,16 +2,16 @@
 
 import { alternatives } from "../alternatives.js";
 import { attempt, send } from "../api.js";
-import { isRigid } from "../choices.js";
+import { CHOSEN, isRigid } from "../choices.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { downloads, reports } from "../jobs.js";
 import { project } from "../project.js";
+import { site } from "../site.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { elements, ground, without } from "./base.js";
-import { runs } from "./runs.js";
 
 // Default values of a form where no preset has the kind.
 const DEFAULTS = {
@@ -42,6 +42,7 @@ const DEFAULTS = {
 const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
 };
+const narrow = matchMedia("(max-width: 900px)");
 const FLOORLESS = ["properties", "block", "rocking_frame"]; // kinds whose floors are not known: no mass leans on them, and no story yields
 const YIELD = 0.3; // share of the weight that new stories bear before they yield
 
@@ -63,13 +64,13 @@ export default function structureTab(app) {
 
   function modelsFor(rigid) {
     const { models, cloud, design } = app.about.state;
-    if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"] }, design: { model: "rigid" } };
-    const usual = { models, cloud: { models: cloud.models }, design: { model: design.model } };
+    if (rigid) return { models: ["rigid"], cloud: { models: ["rigid"], limit: "overturning" }, design: { model: "rigid" } };
+    const usual = { models, cloud: { models: cloud.models, limit: cloud.limit }, design: { model: design.model } };
     return app.state.ground ? without({ structure: {}, ...usual }) : usual;
   }
 
-  const own = [["", t("custom structure")], ...presets.map((p, i) => [String(i), t(p.title)])];
-  const preset = select("preset", t("Start from"), own, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
+  const listed = [["", t("custom structure")], ...presets.map((p, i) => [String(i), t(p.title)])];
+  const preset = select("preset", t("Start from"), listed, "", (i) => i !== "" && put(clone(presets[Number(i)].structure), true));
   const titles = Object.entries(kinds).map(([name, { title }]) => [name, t(title)]);
   const kind = select("kind", t("Kind"), titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
@@ -82,21 +83,31 @@ export default function structureTab(app) {
     drawn = false;
     app.change({});
   });
-  const options = runs(app, () => null);
+  const own = site(app, ({ structure, target }) => {
+    app.begin = "record_set";
+    drawn = false;
+    const none = { ground: undefined, bouc_wen: undefined, impact: undefined, restitution: undefined };
+    app.change({ structure, ...modelsFor(isRigid(structure)), ...none, target, tab: "response", scale: 1,
+      record_set: { shown: true, suites: [CHOSEN], scale: 1, rule: "ec8" } });
+    app.go("response");
+  });
   const kept = alternatives(app, (ghosts) => Object.assign(shown.player.stage, { ghosts }).draw(), true);
   const saved = project(app);
   const facts = h("div");
   const more = folded("modes", t("Modes, masses, and which model to use"), facts);
   const results = h("div", { class: "results" }, kept.element, more, app.next("response", t("Next: see forces and energies over time.")),
     app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
-  const element = h("div", { class: "columns first" }, shown.player.element,
-    h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
-      folded("structure", t("Structure: all fields"), kind, field("structure.name", t("Name"), name),
-        h("div", { "data-path": "structure" }, fields, trouble())),
-      held, below, folded("runs", t("Models and assumptions"), options.element),
-      folded("import", t("Import matrices"), importMatrices(limits.file, current, (structure) => put(structure, true))), saved.element),
-    results);
+  const matrices = importMatrices(limits.file, current, (structure) => put(structure, true));
+  const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
+    own.element, h("fieldset", {}, h("legend", {}, t("This structure")), preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
+    folded("structure", t("Structure: all fields"), kind, matrices, field("structure.name", t("Name"), name),
+      h("div", { "data-path": "structure" }, fields, trouble())),
+    held, below, saved.element);
+  const element = h("div", { class: "columns first" }, side, shown.player.element, results);
+  // In the order in which the eye reads: a narrow window has the drawing above the form.
+  const order = () => element.prepend(...(narrow.matches ? [shown.player.element, side] : [side, shown.player.element]));
+  narrow.addEventListener("change", order);
+  order();
 
   // The first preset of a kind, or default values.
   function fresh(wanted) {
@@ -108,6 +119,7 @@ export default function structureTab(app) {
     const { structure } = app.state;
     const now = kindOf(structure, kinds);
     kind.setValue(now);
+    matrices.hidden = now !== "matrices";
     if (document.activeElement !== name) name.value = structure.name ?? "";
     const match = presets.findIndex((p) => same(p.structure, structure));
     preset.setValue(match < 0 ? "" : String(match));
@@ -136,7 +148,12 @@ export default function structureTab(app) {
     };
     const [path, value] = [`structure.${spec.name}`, app.state.structure[spec.name]];
     const strength = () => Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2));
-    const start = () => (spec.name === "stories" ? { strengths: strength(), post_yield_ratio: 0.05 } : {});
+    const starts = {
+      stories: () => ({ strengths: strength(), post_yield_ratio: 0.05 }),
+      podium: () => ({ n_columns: 4, column_width: 0.8, column_height: 5, column_mass: 8e3 }),
+      joints: () => ({ heights: [Number((0.5 * (view?.heights.at(-1) ?? 10)).toPrecision(2))], half_widths: view?.half_width ?? 1 }),
+    };
+    const start = starts[spec.name] ?? (() => ({}));
     return spec.type === "table" ? tableGroup(path, spec, value, start, change) : tableField(path, spec, value, change);
   }
 
@@ -171,17 +188,21 @@ export default function structureTab(app) {
   }
 
   results.append(downloads(app, reports(app, "report", t("Report (HTML)"), t("Report (PDF)"))));
+  let answered = ""; // the state whose answer is shown
+  const inUse = () => JSON.stringify({ ...app.state, tab: "" });
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
     const asked = app.state.structure;
-    if (!fast) results.classList.add("stale");
+    const key = inUse();
+    if (!fast) results.classList.toggle("stale", key !== answered);
     const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
     shown.stale(!answer);
     if (!answer) return shown.quick.refresh();
     shown.set({ ...answer, ...answer.run }, asked);
     if (fast) return;
     results.classList.remove("stale");
+    answered = key;
     view = answer;
     viewed = JSON.stringify(asked);
     if (answer.section.length) known[answer.kind] = answer.section;
@@ -216,26 +237,33 @@ export default function structureTab(app) {
   function refresh(live = false) {
     quick = live;
     if (!live) {
-      results.classList.add("stale");
+      results.classList.toggle("stale", inUse() !== answered);
       form();
       below.refresh();
       kept.refresh();
       saved.refresh();
-      options.refresh();
+      own.refresh();
       shown.quick.refresh();
     }
     shown.resume();
     load();
   }
-  return { element, refresh, leave: () => shown.leave(), close: (runs) => kept.close(runs), drop: ([file]) => saved.take(file) };
+  return { element, refresh, leave: () => shown.leave(), drop: ([file]) => saved.take(file) };
 }
+
+// How the parameters follow from masses m at heights h, the half width B, and forces F₀ of tendons at r from the pivot.
+const FORMULAS = {
+  "m_tot": "m_tot = Σ m", "L₀ʳ": "L₀ʳ = Σ m h", "I_θ": "I_θ = Σ m (h² + B²)", "M_r": "M_r = m_tot g B + Σ F₀ r", "a_lift": "a_lift = M_r / L₀ʳ",
+  "α": "M(α) = 0; α = M_r / (g L₀ʳ)", "θ_nom": t("θ_nom = 0.7 atan(B / h*₁)"), "λ": "λ = (m_tot g B + Σ F₀ r) / Σ F_y r", "η": "η = θ'⁺ / θ'⁻",
+  "A": "A = ∫ dA", "I": "I = ∫ z² dA", "EI": "EI = k E I", "m": "m = ρ A", "w": "w = m_tot g / Σ k", "Σk": "Σ k", "Σkx²": "Σ k x²",
+};
 
 const EDGES = { 1: t("to the right: {fact}"), "-1": t("to the left: {fact}") };
 
 function parameter(p) {
   const own = p.quantity ? unit(p.quantity) : unitFor(p.unit);
   const value = p.none ? t("none: {reason}", { reason: t(p.none) }) : number(fromSI(p.value, own));
-  return h("div", {}, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
+  return h("div", { title: FORMULAS[p.symbol] }, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.edge ? EDGES[p.edge].replace("{fact}", t(p.help)) : t(p.help, p)));
 }
 
@@ -297,11 +325,6 @@ const SHAPES = [
 const SIZES = {
   rectangle: { width: 1, depth: 1.5 }, box: { width: 2, depth: 2, wall: 0.25 }, circle: { diameter: 1.5 }, tube: { diameter: 1.5, wall: 0.2 },
 };
-const MATERIALS = [
-  [t("concrete"), { elastic_modulus: 3e10, density: 2500 }], [t("steel"), { elastic_modulus: 2.1e11, density: 7850 }],
-  [t("timber"), { elastic_modulus: 1.1e10, density: 450 }], [t("masonry"), { elastic_modulus: 5e9, density: 1900 }],
-];
-const [CONCRETE, STEEL] = MATERIALS.map(([, values]) => values);
 const OF_MATERIAL = ["elastic_modulus", "density"];
 const MOST = 20; // parts
 
@@ -313,6 +336,8 @@ function section(about, path, spec, current, change) {
   const drawn = current();
   const shape = drawn?.shape ?? "";
   const partSpecs = about.section_part;
+  const materials = about.materials.map(({ title, ...values }) => [t(title), values]);
+  const [CONCRETE, STEEL] = materials.map(([, values]) => values);
   const choose = select(`${path}.shape`, t("Cross-section"), SHAPES, shape, (name) => change(turned(name), true),
     { hint: t("in place of bending stiffness and mass") });
 
@@ -343,10 +368,10 @@ function section(about, path, spec, current, change) {
 
   // A list that fills in the material.
   function material(get, put) {
-    const same = MATERIALS.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
-    const names = [...MATERIALS.map(([name]) => [name, name]), ["", t("own values")]];
+    const same = materials.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
+    const names = [...materials.map(([name]) => [name, name]), ["", t("own values")]];
     return select("section.material", t("Material"), names, same?.[0] ?? "", (name) => {
-      const found = MATERIALS.find(([each]) => each === name);
+      const found = materials.find(([each]) => each === name);
       if (found) put({ ...get(), ...found[1] }, true);
     });
   }
