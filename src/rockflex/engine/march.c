@@ -136,7 +136,6 @@ static void rates_of(const Tables *p, int magnitudes, const double *x, double *z
         put(z + i, sum);
     }
     for (int i = 0; i < count - s; i++) z[s + i] = found[i];
-    put(z + count, (vec){0}); /* a vector may be read beyond */
 }
 
 static int acts(const Tables *p, Climb v) { return p->shaken.now && (v.start != 0.0 || v.rise != 0.0); }
@@ -172,6 +171,7 @@ static int expand(const Tables *p, double h, double a, double rise, Climb v, con
         else
             rates_of(p, 0, x, z);
         for (int j = 0; j < conditions; j++) x[first + j] = z[rates + j];
+        put(z + rates, (vec){0}); /* read with the last rates: no term may depend on conditions */
         if (k + 1 == room) break;
         next = x + width;
         const double factor = h / (k + 1);
