@@ -47,7 +47,14 @@ class Drawing(SphinxDirective):
             if not isinstance(made, Figure):
                 return [nodes.raw("", f'<div class="notebook">{made._repr_html_()}</div>', format="html")]
             rf.save_figure(made, target)
-        return [nodes.image(uri=f"/{name}", alt=self.options["alt"], width=self.options.get("width", "100%"))]
+        image = nodes.image(uri=f"/{name}", alt=self.options["alt"], width=self.options.get("width", "100%"))
+        return [nodes.figure("", image, *_caption(source), classes=["drawing"])]
+
+
+def _caption(source: str) -> list[nodes.Node]:
+    """Return the call that drew the picture, if the last line is one of rockflex."""
+    last = ast.unparse(ast.parse(source).body[-1])
+    return [nodes.caption("", "", nodes.literal(text=last))] if last.startswith("rf.plot_") else []
 
 
 def _last_value(source: str) -> Any:

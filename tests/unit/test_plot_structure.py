@@ -13,7 +13,8 @@ import rockflex as rf
 from builders import PROPERTIES, make_frame
 from drawing import notes
 from rockflex.plot._figures import RED
-from rockflex.structure._outline import SYMBOLS
+from rockflex.plot._run_sheet import draw_run_sheet
+from rockflex.structure._outline import SYMBOLS, structure_outline
 
 RECORD = rf.load_suite("el-centro-1940")[0]
 SIZES = ("page", (5.0, 2.5), (3.0, 6.0))
@@ -284,3 +285,26 @@ def test_an_instant_is_within_a_response_of_the_same_structure():
         rf.plot_structure(pier(), response=rf.simulate(pier(), RECORD, "2DOF-S", output="peaks"))
     with pytest.raises(rf.InputError, match="without one"):
         rf.plot_structure(pier(), amplification=2.0)
+
+
+def test_a_tower_is_as_wide_as_its_radii():
+    tower = rf.TaperedTower(200.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
+    (body,) = (each for each in structure_outline(tower.rocking(), tower).strokes if each.filled)
+    x, z, _ = body.points.T
+    np.testing.assert_allclose(np.abs(x), 8.0 - 4.0 * z / 200.0, rtol=1e-12)
+    assert (z.min(), z.max()) == (0.0, 200.0)
+    assert {*np.sign(x)} == {-1.0, 1.0}
+
+
+def test_a_report_draws_the_structure_beside_its_histories():
+    """Where there is room: as it stands at its largest rotation, within the place above its loops."""
+    frame = make_frame()
+    run = rf.simulate(frame, RECORD.scaled(3.0), "MDOF-S")
+    tall, low = (draw_run_sheet(run, structure=frame, width=185.0, height=height) for height in (130.0, 60.0))
+    assert len(tall.axes) == 4 + 1 + 1
+    assert len([axes for axes in low.axes if not axes.axison]) == 0
+    (stage,) = (axes for axes in tall.axes if not axes.axison)
+    texts = [text.get_text() for text in stage.texts]
+    assert f"t = {run.time_of_max_rotation:.2f} s" in texts
+    loops = tall.axes[-1]
+    assert stage.get_position().y0 >= loops.get_position().y1

@@ -26,6 +26,7 @@ from builders import make_frame
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
 from rockflex.foundation.schema import IMPACT
+from rockflex.structure._outline import DARK_ELEMENT_COLORS, ELEMENT_COLORS
 from rockflex.studies._ground_tables import GroundTable
 from rockflex.web import _app, make_app
 from rockflex.web._forms import PRESETS
@@ -609,3 +610,15 @@ def test_help_loads_no_server() -> None:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
     assert "--port" in done.stdout
     assert done.stdout.rstrip().endswith("set()")
+
+
+def test_the_page_has_the_colours_of_the_drawings(client):
+    status, headers, body = client.request("/static/elements.css")
+    assert status == 200
+    assert headers["content-type"].startswith("text/css")
+    light, dark = body.decode().splitlines()
+    assert light.startswith(":root {")
+    assert 'data-theme="dark"' in dark
+    for name in ELEMENT_COLORS:
+        assert f"--{name}: {ELEMENT_COLORS[name]};" in light
+        assert f"--{name}: {DARK_ELEMENT_COLORS[name]};" in dark

@@ -8,12 +8,15 @@ from typing import Any, cast
 
 import numpy as np
 
+PLAIN = frozenset((str, int, bool, type(None)))
 _INFINITE = {"inf": math.inf, "-inf": -math.inf}
 _TEXTS = {"name"}  # keys whose values are texts, whatever they say
 
 
 def as_json_value(value: Any) -> Any:
     """Return dicts, lists, strings and numbers: NaN becomes None, an infinity "inf" or "-inf", a path its text."""
+    if type(value) in PLAIN or (type(value) is float and math.isfinite(value)):  # as most are
+        return value
     if is_dataclass(value) and not isinstance(value, type):
         return as_json_value(asdict(value))
     if isinstance(value, Mapping):

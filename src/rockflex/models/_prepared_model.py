@@ -231,11 +231,14 @@ class PreparedModel:
         """The states of the model, from those of the engine."""
         if not places.size:  # all runs were refused
             return np.zeros((0, self.model.layout.size))
+        if not self.model.integrated and self.base is None:
+            return states
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
         if self.model.integrated:
             return states_with_branch_codes(self.model, keys, places, states)
-        return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
+        assert self.base is not None
+        return self.base.states_of_model(keys, places, states, history=history)
 
     def failure(
         self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
@@ -314,7 +317,7 @@ def run_all(
         If the runs were stopped from outside.
     """
     first, settles, failures = engines[0], free_vibration is None, dict[int, InputError | SolverError]()
-    begins = [first.at_rest] * len(runs)
+    begins = [first.at_rest] * len(runs)  # the same for all models of a pool
     for place, (engine, run) in enumerate(zip(engines, runs, strict=True)):
         try:
             engine.check_work(run, dt, free_vibration, history=history, limit=work_limit)
@@ -328,16 +331,15 @@ def run_all(
         pool.system,
         [runs[place].acceleration for place in allowed],
         [runs[place].scale for place in allowed],
-        free=[
-            free_vibration_samples(
-                engines[place].longest_settling_time if free_vibration is None else free_vibration, dt
-            )
-            for place in allowed
-        ],
+        free=(
+            [free_vibration_samples(engines[place].longest_settling_time, dt) for place in allowed]
+            if free_vibration is None
+            else free_vibration_samples(free_vibration, dt)
+        ),
         settles=settles,
         names=COUNTED,
         verticals=[runs[place].vertical for place in allowed],
-        start=np.array([begins[place][1] for place in allowed]) if allowed else None,
+        start=np.array([begins[place][1] for place in allowed]) if starts and allowed else begins[0][1],
         keys=[begins[place][0] for place in allowed],
         which=[engines[place].place for place in allowed],
     )

@@ -148,6 +148,13 @@ class SecondMode:
     base_shear: float
     base_moment: float
 
+    def combined(self, name: str, peak: float) -> float:
+        """Return the square root of the sum of the squares of a peak of 2DOF-S and of this mode's, by its name."""
+        return math.hypot(peak, getattr(self, name))
+
+
+COMBINED_QUANTITIES = ("top_displacement", "base_shear", "base_moment")  # in the order of `CombinedPeaks`
+
 
 @dataclass(frozen=True)
 class CombinedPeaks:
@@ -197,17 +204,6 @@ def second_mode_peaks(properties: RockingProperties, motion: GroundMotion) -> Se
     )
 
 
-def combine_modal_peaks(rocking: Response, second: SecondMode) -> CombinedPeaks:
-    """Return the square root of the sum of the squares of the two peaks, for each quantity."""
-    return CombinedPeaks(
-        rocking=rocking,
-        second=second,
-        max_top_displacement=math.hypot(rocking.max_top_displacement, second.top_displacement),
-        max_base_shear=math.hypot(rocking.max_base_shear, second.base_shear),
-        max_base_moment=math.hypot(rocking.max_base_moment, second.base_moment),
-    )
-
-
 def modal_combination(
     structure: RockingStructure | RockingProperties,
     motion: GroundMotion,
@@ -253,4 +249,6 @@ def modal_combination(
     rocking = simulate(
         properties, motion, "2DOF-S", output="peaks", free_vibration=free_vibration, work_limit=work_limit
     )
-    return combine_modal_peaks(rocking, second_mode_peaks(properties, motion))
+    second = second_mode_peaks(properties, motion)
+    combined = (second.combined(name, getattr(rocking, f"max_{name}")) for name in COMBINED_QUANTITIES)
+    return CombinedPeaks(rocking, second, *combined)

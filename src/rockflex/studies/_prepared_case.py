@@ -217,8 +217,9 @@ Scaled = tuple[PreparedCase | InputError, GroundMotion, float]
 class RunPeaks:
     """Results of some runs, by their places.
 
-    `columns` are the status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of
-    shape (count,); empty if all runs failed. The values of runs that failed mean nothing; their errors are the
+    `columns` are the status, as a place in `rockflex.response.STATUSES`, every scalar of the responses, and "max_" with
+    the name of each `extra` quantity of the cases, which has one value, each of shape (count,); empty if all runs
+    failed. The values of runs that failed mean nothing; their errors are the
     `failures`, in the order of the runs. `responses` are those of the runs of cases with histories.
     """
 
@@ -290,17 +291,6 @@ def share_case_preparation(runs: Iterable[Scaled]) -> None:
     share_solvers(steps)
 
 
-def solutions_of_runs(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
-    """Run motions, each at a scale on a case without history, together where that can be."""
-    share_case_preparation(runs)
-    found = dict[int, Solution | InputError | SolverError]()
-    failures = dict[int, InputError | SolverError]()
-    for places, solutions in _solutions_by_group(runs, failures):
-        for index, place in enumerate(places):
-            found[place] = solutions.failures.get(index) or solutions.one(index)
-    return [failures.get(place) or found[place] for place in range(len(runs))]
-
-
 def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
     """Run motions, each at a scale on a case; those that can be are prepared and solved together.
 
@@ -314,13 +304,18 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
         failures |= {places[place]: error for place, error in solutions.failures.items()}
         if not cases[0].history:
             found = response_columns_of_runs([case.model for case in cases], solutions, cases[0].tracked)
+            more = cases[0].tracked.peaks.named(solutions.peaks)
+            found |= {f"max_{name}": more[name].reshape(len(cases)) for name in cases[0].extra or ()}
         elif solutions.failures:
             found = {}
         else:
             response = cases[0].response(runs[places[0]][1], solutions.one(0))
             responses[places[0]], found = response, columns_of_responses([response])
+        where = np.array(places)
         for name, values in found.items():
-            columns.setdefault(name, missing_values(len(runs), values.dtype))[places] = values
+            if name not in columns:
+                columns[name] = missing_values(len(runs), values.dtype)
+            columns[name][where] = values
         left.subtract(cases)
         if not keep:
             for case in {case for case in cases if not left[case]}:

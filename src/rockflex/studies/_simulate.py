@@ -42,7 +42,7 @@ from rockflex.studies._arguments import (
     wants_history,
 )
 from rockflex.studies._prepared_case import ManyKeywords, PreparedCase, RunOptions, RunPeaks, peaks_of_runs
-from rockflex.studies._result_tables import RESULTS, arrow_table, tables_to_dataframe
+from rockflex.studies._result_tables import RESULTS, pandas_columns
 from rockflex.studies._run_matrix import RunMatrix
 from rockflex.studies.parallel import map_runs_in_order
 from rockflex.studies.progress import reporting_progress
@@ -295,19 +295,20 @@ def simulate_many(
     if len(refused) == total:
         raise refused[0]
     stories = {name: float for name in found.columns if name not in RESULTS and name != "status"}
-    results = arrow_table(
+    results = pandas_columns(
         {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS, **stories}, found.failed
     )
 
     import pandas as pd
 
     structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
-    table, axes = tables_to_dataframe(results), dict[str, Any]()
-    axes["structure"] = structure if names is None else _categorical_column(structure, names)
-    axes["motion"] = _categorical_column(motion, [record.name for record in records])
-    axes["scale"], axes["model"] = np.asarray(factors)[scale], _categorical_column(model, [e.label for e in chosen])
-    for place, (name, values) in enumerate(axes.items()):  # a table of all columns at once takes ten times as long
-        table.insert(place, name, values)
+    axes = {
+        "structure": structure if names is None else _categorical_column(structure, names),
+        "motion": _categorical_column(motion, [record.name for record in records]),
+        "scale": np.asarray(factors)[scale],
+        "model": _categorical_column(model, [each.label for each in chosen]),
+    }
+    table = pd.DataFrame({**axes, **results}, copy=False)
     if history:
         table["response"] = pd.Series([found.responses.get(place) for place in range(total)], dtype=object)
     return table

@@ -18,6 +18,7 @@ from rockflex.structure.file._toml_table import (
     first_table_in_annotation,
     members_of_annotation,
     schema_key_of_field,
+    tables_of_fields,
     valid_value_description,
 )
 from rockflex.studies._prepared_case import PreparedCase
@@ -113,7 +114,7 @@ def _form_values_and_fields(
                 yield from _form_values_and_fields(path, each, None, field)
             else:
                 inner = None if table is None else table.model_fields.get(str(key))
-                below = None if inner is None else first_table_in_annotation(inner.annotation)
+                below = None if table is None else tables_of_fields(table).get(str(key))
                 yield from _form_values_and_fields(f"{path}.{key}", each, below, inner)
     elif isinstance(value, list | tuple):
         if value and len(value) > _most_values_of_list(value):

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import cache
 from inspect import Parameter, signature, unwrap
 from types import GenericAlias, UnionType
 from typing import Annotated, Any, ClassVar, SupportsIndex, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -110,6 +111,12 @@ def tables_in_annotation(annotation: Any) -> list[type["TomlTable"]]:
 def first_table_in_annotation(annotation: Any) -> type["TomlTable"] | None:
     """Return the kind of table that a field holds, the first of several; None if it holds another value."""
     return next(iter(tables_in_annotation(annotation)), None)
+
+
+@cache
+def tables_of_fields(table: type[TomlTable]) -> Mapping[str, type[TomlTable] | None]:
+    """Return the `first_table_in_annotation` of every field of a table by its name."""
+    return {name: first_table_in_annotation(field.annotation) for name, field in table.model_fields.items()}
 
 
 def parse_toml_table(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:

@@ -15,16 +15,14 @@ from rockflex.foundation.errors import InputError
 from rockflex.models._named_quantities import modal_displacement
 from rockflex.models._rocking_model import RockingModel
 from rockflex.motion._suite import Suite
-from rockflex.response._respond import response_of_solution
-from rockflex.response._response import Response
 from rockflex.structure._frames import Frame
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import Motions, checked_motions, free_vibration_time
 from rockflex.studies._case_keys import FreeVibration
-from rockflex.studies._modal_combination import SecondMode, combine_modal_peaks, second_mode_peaks
+from rockflex.studies._modal_combination import COMBINED_QUANTITIES, SecondMode, second_mode_peaks
 from rockflex.studies._plan import ChunkedPlan
-from rockflex.studies._prepared_case import PreparedCase, solutions_of_runs
-from rockflex.studies._result_tables import Columns, Row, columns_of_kind, result_columns, result_row
+from rockflex.studies._prepared_case import PreparedCase, peaks_of_runs
+from rockflex.studies._result_tables import Columns, Row, columns_of_kind, joined_tables, result_columns
 from rockflex.studies._run_matrix import record_columns, record_facts
 from rockflex.studies._run_plan import run_plan
 from rockflex.studies.progress import ProgressChoice
@@ -46,6 +44,7 @@ STRUCTURE = "nominal_limit structure_mass total_mass l0r_g uplift_acceleration"
 SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
+SUFFIXES = "_mdof", "_2dof"  # of the results of both models, in the order of their runs
 BATCH_SIZE = 256  # structures that are prepared together
 MAX_PAIRS = 2**32 - 1  # pairs with different random numbers
 
@@ -198,7 +197,7 @@ class PopulationPlan(ChunkedPlan):
     ) -> None:
         super().__init__(motions, pairs, pairs_per_chunk)
         self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
-        self._facts = record_facts(motions)
+        self._facts, self._record_columns = record_facts(motions), record_columns(motions)
 
     @property
     def n_runs(self) -> int:
@@ -214,18 +213,19 @@ class PopulationPlan(ChunkedPlan):
             "behaviour": BEHAVIOURS,
             **columns_of_kind(DRAWN, float),
         }
-        found |= record_columns(self.motions)
+        found |= self._record_columns
         found |= columns_of_kind("pga pgv", float) | columns_of_kind(STRUCTURE, float) | columns_of_kind(SECOND, float)
-        found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
+        for suffix in SUFFIXES:
+            found |= result_columns(suffix=suffix)
         return found | columns_of_kind(COMBINED, float) | {"error": str}
 
     def results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
-        batches = (self._rows(units[first : first + BATCH_SIZE]) for first in range(0, len(units), BATCH_SIZE))
-        rows = [row for batch in batches for row in batch]
-        return {name: [row.get(name) for row in rows] for name in self.columns}
+        return joined_tables(
+            [self._results(units[first : first + BATCH_SIZE]) for first in range(0, len(units), BATCH_SIZE)]
+        )
 
-    def _rows(self, units: Sequence[int]) -> list[Row]:
+    def _results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
         drawn = [draw_prototype(self.seed, unit, len(self.motions)) for unit in units]
         motions = [self.motions[each.record] for each in drawn]
@@ -233,30 +233,25 @@ class PopulationPlan(ChunkedPlan):
         seconds = [second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
         cases = [self._cases(properties) for properties in structures]
         runs = [(case, motion, 1.0) for both, motion in zip(cases, motions, strict=True) for case in both]
-        solved = solutions_of_runs(runs)
-        rows = list[Row]()
-        pairs = zip(solved[::2], solved[1::2], strict=True)
-        given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
-        for unit, prototype, motion, properties, second, both, solutions in given:
-            row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
-            row |= (
-                _prototype_facts(prototype, properties)
-                | self._facts[prototype.record]
-                | _second_mode_columns(properties, second)
-            )
-            errors = [each for each in (*both, *solutions) if isinstance(each, Exception)]
-            if errors:
-                rows.append(row | {"error": str(errors[0])})
-                continue
-            all_modes, one_mode = (
-                response_of_solution(case.model, motion.name, solution, case.tracked)
-                for case, solution in zip(both, solutions, strict=True)
-            )
-            row |= result_row(all_modes, "_mdof")
-            row["max_second_displacement_mdof"] = both[0].tracked.peaks.named(solutions[0].peaks)["second_mode"].item()
-            row |= result_row(one_mode, "_2dof")
-            rows.append(row | _combined_peak_columns(one_mode, second))
-        return rows
+        peaks = peaks_of_runs(runs, keep=False)
+        facts = [
+            _prototype_facts(each, properties) | self._facts[each.record] | _second_mode_columns(properties, second)
+            for each, properties, second in zip(drawn, structures, seconds, strict=True)
+        ]
+        found: dict[str, list[Any]] = {name: [each[name] for each in facts] for name in facts[0]}
+        found |= {"pair": list(units), "pga": [each.pga for each in motions], "pgv": [each.pgv for each in motions]}
+        of_runs = peaks.lists()
+        errors = of_runs.pop("error")
+        found["error"] = [one or other for one, other in zip(errors[::2], errors[1::2], strict=True)]
+        for name, values in of_runs.items():
+            for first, suffix in enumerate(SUFFIXES):  # neither has results if one of both failed
+                of_model = zip(values[first::2], found["error"], strict=True)
+                found[name + suffix] = [None if error else value for value, error in of_model]
+        found["max_second_displacement_mdof"] = found.get("max_second_mode_mdof", [])
+        for name in COMBINED_QUANTITIES:
+            pairs = zip(found.get(f"max_{name}_2dof", []), seconds, strict=False)
+            found[f"srss_{name}"] = [None if peak is None else second.combined(name, peak) for peak, second in pairs]
+        return {name: found.get(name) or [None] * len(units) for name in self.columns}
 
     def _cases(self, properties: RockingProperties) -> Sequence[PreparedCase | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
@@ -300,12 +295,6 @@ def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> R
         "effective_mass_2": float(properties.effective_mass[1]),
         "effective_height_2": float(properties.effective_height[1]),
     }
-
-
-def _combined_peak_columns(rocking: Response, second: SecondMode) -> Row:
-    """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
-    peaks = combine_modal_peaks(rocking, second)
-    return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
 
 def run_population(
