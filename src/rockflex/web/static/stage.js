@@ -156,7 +156,8 @@ class Stage {
     const { elements = [], broken = [], stories = [] } = model.yielding ?? {};
     this.view.elements.forEach(({ symbol, ends }, k) => {
       g.strokeStyle = g.fillStyle = color(past(broken[k]) ? "error" : past(elements[k]) ? "lost" : symbol);
-      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))));
+      const more = symbol === "tendons" ? 2 : 0; // thin, and often before a column
+      drawBetween(g, this.symbols[symbol], ...ends.map((point) => to(frame.at(point))), 1, more);
     });
     g.strokeStyle = color("lost");
     g.lineWidth = 5;
