@@ -24,6 +24,7 @@ extensions = [
     "drawings",
     "sphinxcontrib.katex",
     "figures",
+    "navigation",
     "reference",
     "signatures",
 ]

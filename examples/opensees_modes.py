@@ -60,7 +60,11 @@ def structure_of(
     )
 
 
-def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, Float, list[Freedom]]:
+def matrices_of(
+    ops: Any,
+    axis: float = 0.0,
+    base: float = 0.0,
+) -> tuple[Float, Float, list[Freedom]]:
     """Mass, stiffness and degrees of freedom of the plane model in memory.
 
     Its base is fixed; `axis` is the x of its axis and `base` the y of its
@@ -82,7 +86,8 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
         ops.integrator("GimmeMCK", *factors)
         ops.analyze(1, 0.0)
         size = ops.systemSize()
-        found.append(np.array(ops.printA("-ret"), dtype=np.float64).reshape(size, size))
+        printed = np.array(ops.printA("-ret"), dtype=np.float64)
+        found.append(printed.reshape(size, size))
     stiffness, mass = found
     freedoms: dict[int, Freedom] = {}
     for node in ops.getNodeTags():
@@ -90,9 +95,8 @@ def matrices_of(ops: Any, axis: float = 0.0, base: float = 0.0) -> tuple[Float, 
         equations = ops.nodeDOFs(node)
         for kind, equation in zip(("x", "y", "turn"), equations, strict=True):
             if equation in freedoms:
-                raise ValueError(
-                    f"Node {node} shares an equation with another. Model floors without multi-point constraints."
-                )
+                shares = f"Node {node} shares an equation with another"
+                raise ValueError(f"{shares}: use no constraints.")
             if equation >= 0:  # fixed degrees of freedom have none
                 freedoms[equation] = Freedom(kind, x - axis, y - base)
     return mass, stiffness, [freedoms[i] for i in range(len(mass))]

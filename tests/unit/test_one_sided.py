@@ -215,3 +215,37 @@ def test_the_command_line_says_to_which_side_it_opens(tmp_path: Any) -> None:
     printed = CliRunner().invoke(app, ["modes", str(file)]).stdout
     assert "Opens to the left alone" in printed
     assert "0.3" in printed
+
+
+@pytest.mark.parametrize(
+    "tie",
+    [
+        rf.YieldingDissipator(1e6, 6e4, 0.02, height=9.0, tension_only=True),
+        rf.Tendon(2e4, 1e6, yield_force=7e4, post_yield_ratio=0.02, height=9.0),
+    ],
+    ids=["loose", "prestressed"],
+)
+@pytest.mark.parametrize("e", [0.0, 0.4])
+def test_a_flexible_facade_with_a_tie_balances_its_energy(tie: rf.Tendon, e: float) -> None:
+    """It opens to one side, its floors keep their velocities at impacts, and the tie yields and never pushes."""
+    facade = rf.Restrained(rf.OneSided(FRAME, e), tie)
+    run = rf.simulate(facade, RECORD.scaled(1.5), output="history", free_vibration=2.0)
+    assert run.energy.closing_error < 1e-10
+    assert run.rotation.min() >= 0.0
+    assert run.rotation.max() > 1e-4
+    assert run.element_force.min() > -1e-5  # it goes slack a picometre late
+    assert run.energy.impact_losses.min() >= 0.0
+    free = FRAME.rocking()
+    struck = np.flatnonzero((np.diff(run.time) == 0.0) & (np.diff(run.rotation_velocity) != 0.0))
+    assert struck.size
+    total = run.modal_velocity + np.outer(run.rotation_velocity, free.effective_height)
+    np.testing.assert_allclose(total[struck + 1], total[struck], rtol=1e-9, atol=1e-9)
+
+
+def test_a_tie_that_never_yields_is_elastic() -> None:
+    held = [rf.Restrained(rf.OneSided(FRAME, 0.3), each) for each in (
+        rf.YieldingDissipator(1e6, 1e9, 0.02, height=9.0),
+        rf.YieldingDissipator(1e6, 1e7, 0.5, height=9.0),
+    )]  # fmt: skip
+    first, second = (rf.simulate(each, RECORD) for each in held)
+    np.testing.assert_allclose(first.max_rotation, second.max_rotation, rtol=1e-10)

@@ -234,7 +234,7 @@ def _fragility_curve_view(
             turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
             found["p"] = turned.probability(grid)
             found["median"] = _interpolated_fragility_median(grid, found["p"])
-            found["low"], found["high"] = turned.band(grid, choice.confidence)
+            found["low"], found["high"] = _rising_band(*turned.band(grid, choice.confidence))
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
@@ -247,12 +247,21 @@ def _fragility_curve_view(
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
             return found
-    low, high = curve.band(grid, choice.confidence)
+    low, high = _rising_band(*curve.band(grid, choice.confidence))
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
     if note:
         notes.append(f"{fit.model}: {note}")
     return found | {"p": curve.probability(grid), "low": low, "high": high, "median": median}
+
+
+def _rising_band(low: Array, high: Array) -> tuple[Array, Array]:
+    """Return a band that rises with the intensity, as the probability does.
+
+    Far from the runs that exceed the limit the error of the logit outgrows the logit, and the band of each intensity by
+    itself reaches from 0 to 1; what a higher intensity has as its upper limit holds for a lower one, too.
+    """
+    return np.fmax.accumulate(low), np.fmin.accumulate(high[::-1])[::-1]
 
 
 def _interpolated_fragility_median(grid: Array, p: Array) -> float | None:

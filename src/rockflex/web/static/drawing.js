@@ -18,14 +18,14 @@ function strokes(symbol, length, half = 1) {
   return symbol.map(([points, width, filled]) => ({ points: points.map(([u, share]) => [half * u, share * length]), width, filled }));
 }
 
-// A symbol along the line from one point to another.
-export function drawBetween(g, symbol, from, end, half) {
+// A symbol along the line from one point to another, with lines that are `more` px wider.
+export function drawBetween(g, symbol, from, end, half, more = 0) {
   const [across, along] = [end[0] - from[0], end[1] - from[1]];
   g.save();
   g.translate(...from);
   g.rotate(Math.atan2(along, across) - Math.PI / 2);
   for (const { points, width, filled } of strokes(symbol, Math.hypot(across, along), half)) {
-    g.lineWidth = width;
+    g.lineWidth = width + more;
     g.beginPath();
     for (const [u, v] of points) g.lineTo(-u, v);
     if (filled) g.fill();

@@ -41,8 +41,8 @@ export default function fragilityTab(app) {
   const table = scrolled(t("Fits"), { id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, t("Fragility curves")), keys, curves.element,
-    h("p", { class: "hint" }, t("Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs " +
-      "of similar intensity.")),
+    h("p", { class: "hint" }, t("Lines: fitted curves; bands: their confidence, rising with the intensity as the probability does; circles: observed fraction " +
+      "in groups of runs of similar intensity.")),
     table,
     h("h2", {}, t("All runs")), cloud.element,
     h("p", { class: "hint" }, t("Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom.")),
