@@ -435,8 +435,7 @@ class _Layout:
 
     def _draw_pivots(self, here: MetresToStagePoints) -> None:
         if not self._poses.sprung:
-            o = self._poses.outline
-            x, y = here(self._poses.place(0, np.array([o.left, o.right]), np.zeros(2), self._by))
+            x, y = here(self._poses.base(0, self._by))
             self._line([*x], [*y], BLACK, linestyle="none", marker="o", markersize=4.0, markerfacecolor="white")
 
     def _draw_dimension(self, x: float, low: float, high: float) -> None:

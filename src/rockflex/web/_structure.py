@@ -167,6 +167,7 @@ def structure_outline_view(entry: StructureEntry, built: BuiltStructure, ground:
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
         "reach": float(np.abs(points[:, 0]).max()),
+        "turning": outline.turning if math.isfinite(outline.turning) else None,
         "strokes": [each._asdict() for each in outline.strokes],
         "elements": [
             {name: getattr(table, name) for name in ("kind", *PLACE)} | {"symbol": symbol, "ends": ends}

@@ -170,8 +170,10 @@ class StructurePoses:
         return np.where(how == GROUND, x, across), np.where(how == BODY, up, still)
 
     def base(self, frame: int, amplification: float) -> tuple[Array, Array]:
-        """Return where the left and the right edge of the base are drawn in a frame."""
+        """Return where the left and the right edge of the base are drawn in a frame; columns under one stand there."""
         edges = np.array([self.outline.left, self.outline.right])
+        if self.outline.turning < np.inf:
+            return edges, np.zeros(2)
         return self.place(frame, edges, np.zeros(2), amplification)
 
 
@@ -194,7 +196,7 @@ def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Arra
         slip=at.slip if model.lifts else still,
         heave=at.heave if sprung else still,
         sway=outline.sway(at.modal_displacement, at.joint_rotation),
-        rise=at.edge_uplift if model.lifts else np.zeros((times.size, 2)),
+        rise=at.edge_uplift if model.lifts and outline.turning == np.inf else np.zeros((times.size, 2)),
         uplifted=np.asarray(at.uplifted) if model.lifts else np.zeros(times.size, bool),
         sliding=running & (np.abs(at.slip_velocity) > _MIN_SLIP_SPEED) if model.lifts else np.zeros(times.size, bool),
         impact=(since < _IMPACT_SECONDS * speed) & running,

@@ -73,13 +73,13 @@ class Stage {
       if (!how) return [x, z > 0 ? z : z - sunk];
       const i = Math.max(1, heights.findIndex((each) => each >= z * (1 - 1e-9)));
       const share = (z - heights[i - 1]) / (heights[i] - heights[i - 1]);
-      const [x1, z1] = place(x + amplification * (u[i - 1] + share * (u[i] - u[i - 1])), z);
+      const [x1, z1] = place(x + amplification * (u[i - 1] + share * (u[i] - u[i - 1])), Math.min(z, view.turning ?? Infinity));
       return [x1, how === 1 ? z : z1];
     };
     return {
       ...moved, theta, side, place, at,
       points: heights.map((z) => at([0, z, 2])),
-      base: [place(left, 0), place(right, 0)],
+      base: view.turning ? [[left, 0], [right, 0]] : [place(left, 0), place(right, 0)], // under columns it stays
       impact: model.impact_times.some((t) => time >= t && time - t < IMPACT),
     };
   }
