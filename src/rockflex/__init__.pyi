@@ -5,15 +5,18 @@ from .fragility import AnnualRate as AnnualRate
 from .fragility import BootstrapBand as BootstrapBand
 from .fragility import CloudFit as CloudFit
 from .fragility import CloudFits as CloudFits
+from .fragility import DistributionComparison as DistributionComparison
 from .fragility import HazardCurve as HazardCurve
 from .fragility import LogisticFit as LogisticFit
 from .fragility import LognormalFragility as LognormalFragility
 from .fragility import OutcomeFragility as OutcomeFragility
 from .fragility import OutcomeProbabilities as OutcomeProbabilities
 from .fragility import RotationFragility as RotationFragility
+from .fragility import SubsetEstimate as SubsetEstimate
 from .fragility import UnanimousOutcome as UnanimousOutcome
 from .fragility import annual_rate as annual_rate
 from .fragility import bootstrap_band as bootstrap_band
+from .fragility import compare_distributions as compare_distributions
 from .fragility import compare_measures as compare_measures
 from .fragility import fit_capacities as fit_capacities
 from .fragility import fit_cloud as fit_cloud
@@ -22,6 +25,8 @@ from .fragility import fit_logistic as fit_logistic
 from .fragility import fit_outcomes as fit_outcomes
 from .fragility import fit_stripes as fit_stripes
 from .fragility import risk_targeted_median as risk_targeted_median
+from .fragility import subset_simulation as subset_simulation
+from .fragility import variance_shares as variance_shares
 from .fragility import write_nrml as write_nrml
 from .fragility import write_pelicun as write_pelicun
 from .models import AngularMomentum as AngularMomentum

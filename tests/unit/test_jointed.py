@@ -80,6 +80,12 @@ def test_the_energy_closes(vertical: float | None, leaning: float) -> None:
     assert run.element_yielded[1]
 
 
+def test_the_history_knows_every_opening() -> None:
+    for scale in (0.6, 1.2):
+        run = rf.simulate(rf.Jointed(FRAME, JOINT), RECORD.scaled(scale), output="history")
+        assert run.uplift_times.size == run.n_uplifts > 5
+
+
 def test_joints_that_land_at_one_instant_do_not_take_turns_without_end() -> None:
     frame = rf.Frame(5, 3.0, 40e3, 40e3, 1.0, period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
     motion = rf.load_suite("fema-p695-far-field")["FF-14-b"]

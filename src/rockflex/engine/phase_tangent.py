@@ -70,7 +70,11 @@ def phase_tangent(
     events = [{step: _events_by_name(each) for step, each in some.items()} for some in phases]
 
     def taken(value: Callable[[int, int], Any]) -> Array:
-        found = [sum(weight * value(k, step) for step, weight in each.items()) for k, each in enumerate(weights)]
+        found = list[Array]()
+        for k, each in enumerate(weights):
+            of_steps = {step: np.asarray(value(k, step)) for step in each}
+            first = next(iter(of_steps.values()))  # what a parameter does not change has no derivative, to the bit
+            found.append(np.asarray(sum(weight * (of_steps[step] - first) for step, weight in each.items())))
         return np.array(found)
 
     def jumped(number: int, y: Array, a: float, a_v: float, target: Key | None) -> Array:

@@ -4,12 +4,15 @@ from rockflex.fragility._annual_rate import AnnualRate, annual_rate, risk_target
 from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
 from rockflex.fragility._cloud import CloudFit, compare_measures, fit_cloud
 from rockflex.fragility._clouds import CloudFits, fit_clouds
+from rockflex.fragility._distributions import DistributionComparison, compare_distributions
 from rockflex.fragility._exports import write_nrml, write_pelicun
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._limit_states import LIMIT_STATES, OVERTURNING, LimitState, residual_rotation_limit_state
 from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility, fit_capacities, fit_stripes
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, RotationFragility, fit_outcomes
+from rockflex.fragility._subset import SubsetEstimate, subset_simulation
+from rockflex.fragility._variance import variance_shares
 
 __all__ = [
     "LIMIT_STATES",
@@ -18,6 +21,7 @@ __all__ = [
     "BootstrapBand",
     "CloudFit",
     "CloudFits",
+    "DistributionComparison",
     "HazardCurve",
     "LimitState",
     "LogisticFit",
@@ -25,9 +29,11 @@ __all__ = [
     "OutcomeFragility",
     "OutcomeProbabilities",
     "RotationFragility",
+    "SubsetEstimate",
     "UnanimousOutcome",
     "annual_rate",
     "bootstrap_band",
+    "compare_distributions",
     "compare_measures",
     "fit_capacities",
     "fit_cloud",
@@ -37,6 +43,8 @@ __all__ = [
     "fit_stripes",
     "residual_rotation_limit_state",
     "risk_targeted_median",
+    "subset_simulation",
+    "variance_shares",
     "write_nrml",
     "write_pelicun",
 ]

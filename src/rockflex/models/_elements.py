@@ -59,7 +59,7 @@ def branches_of_moving_elements(
             found.append(branch)
             continue
         reach = side * turn * arm_of_element(properties, each, side) if side != CLOSED else 0.0
-        stopped = each.stopped(branch)
+        stopped = each.branch_at_rest(branch)
         found.append(each.moving(stopped, int(np.sign(reach))) if turn else stopped)
     return (side, *found)
 

@@ -226,19 +226,28 @@ class JointedModel(RockingModel):
 
     def impacts(self, states: Array) -> Bools:
         """Return True for the interval between the two states of every landing of a joint, shape (n - 1,)."""
-        found, sides, time = super().impacts(states), self.sides_at(states), states[:, TIME]
-        at_once = time[1:] == time[:-1]
-        for joint, place in enumerate(self.layout.rotations[1:], 1):
-            side, spin = sides[:, joint], self.layout.of(states, place + 1)
-            stopped = (side[1:] != side[:-1]) | ((spin[1:] == 0.0) & (spin[:-1] != 0.0))
-            found |= at_once & (side[:-1] != CLOSED) & stopped
+        return super().impacts(states) | self._landings(states).any(axis=1)
+
+    def _landings(self, states: Array) -> Bools:
+        """Return which joints above the base land between adjacent states, shape (n - 1, J).
+
+        One that opens again to the same side at that instant has lost its velocity.
+        """
+        sides, time = self.sides_at(states)[:, 1:], states[:, TIME]
+        spins = states[:, [HEADER + place + 1 for place in self.layout.rotations[1:]]]
+        stopped = (sides[1:] != sides[:-1]) | ((spins[1:] == 0.0) & (spins[:-1] != 0.0))
+        return (time[1:] == time[:-1])[:, None] & (sides[:-1] != CLOSED) & stopped
+
+    def openings(self, states: Array) -> Bools:
+        """Return which joints open between adjacent states, that of the base first, shape (n - 1, b)."""
+        sides = self.sides_at(states)
+        found = (sides[1:] != CLOSED) & (sides[1:] != sides[:-1])
+        found[:, 1:] |= (sides[1:, 1:] != CLOSED) & self._landings(states)
         return found
 
     def uplift_times(self, states: Array) -> Array:
         """Return the times in s at which a joint opens, that of the base or another."""
-        sides = self.sides_at(states)
-        opens = (sides[1:] != CLOSED) & (sides[1:] != sides[:-1])
-        return np.repeat(states[1:, TIME], opens.sum(axis=1))
+        return np.repeat(states[1:, TIME], self.openings(states).sum(axis=1))
 
     def raised_weight(self, states: Array) -> Array:
         """Return the gravity energy per unit of gravity in kg m, for small rotations, shape (n,)."""

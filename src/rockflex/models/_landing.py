@@ -87,17 +87,17 @@ def landing_jump(
     N, height, mass = p.n_modes, p.effective_height, p.effective_mass
     modes, rotation, spin = slice(N, 2 * N), 2 * N, 2 * N + 1
 
-    def energy(state: Array, inertia: float) -> float:
+    def kinetic_energy(state: Array, inertia: float) -> float:
         velocity = state[modes] + height * state[spin]
         return 0.5 * inertia * state[spin] ** 2 + 0.5 * float(mass @ velocity**2)
 
     def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
-        before = energy(state, inertia(-1 if state[spin] > 0.0 else 1, state))
+        before = kinetic_energy(state, inertia(-1 if state[spin] > 0.0 else 1, state))
         leaning = (state[:N] if model.complete else straight,) if displaced else ()
         velocity, passed = velocities_after(model.law, p, state[modes], float(state[spin]), *leaning)
         after, onto = state.copy(), int(np.sign(passed))
         after[modes], after[rotation], after[spin] = velocity, 0.0, passed
-        gained = energy(after, inertia(onto, after) if onto != CLOSED else 0.0) - before
+        gained = kinetic_energy(after, inertia(onto, after) if onto != CLOSED else 0.0) - before
         if onto != CLOSED:
             back = -onto * turn(onto, after, acceleration, vertical)
             if 2.0 * abs(passed) < back * SHORTEST_EXCURSION:

@@ -311,7 +311,7 @@ class LinearSystemBase:
         way = each.direction(branch)
         if way:
             row = way * self.stretching(place, key)
-            found.append(self.event("turn", row, other(each.stopped(branch)), 1.0))
+            found.append(self.event("turn", row, other(each.branch_at_rest(branch)), 1.0))
         return found
 
     @property

@@ -178,7 +178,7 @@ class NonlinearSpringPhases(NonlinearRockingPhases):
                 found.append(self.checked("change", target, scale, *limit, jump=self.kept(key, target)))
             way = each.direction(key[place])
             if way:
-                target = _with(key, place, each.stopped(key[place]))
+                target = _with(key, place, each.branch_at_rest(key[place]))
                 found.append(self.checked("turn", target, 1.0, SPEED, k, way, jump=self.kept(key, target)))
         return found
 

@@ -301,7 +301,7 @@ class RockingModel(Value):
             elongation = np.where(side < 0.0, left, right)
             first = HEADER + self.layout.memory + known.get(place, 0)
             found = each.branch_at(elongation, states[:, first : first + each.n_internal])
-            at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
+            at_rest = np.array([each.branch_at_rest(branch) for branch in range(max(each.branches) + 1)])
             branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
         return branches
 

@@ -120,7 +120,9 @@ def tangents_of_run(
 
     begins = np.zeros((1 + len(parameters), system.layout.size))
     for row, some in zip(begins[1:], parameters, strict=True):
-        row += sum(some.weights[step] * each.start(some.starts[step])[1] for step, each in some.engines.items())
+        of_steps = {step: each.start(some.starts[step])[1] for step, each in some.engines.items()}
+        first = next(iter(of_steps.values()))
+        row += sum(some.weights[step] * (state - first) for step, state in of_steps.items())
     one_sided = np.isin(list(system.outputs), list(system.one_sided))
     tangents = follow_tangents(
         trace, phase_of, tangent_of, begins, one_sided, at_rest=solution.settled, observed=observed

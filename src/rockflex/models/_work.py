@@ -233,7 +233,7 @@ class Task:
             work = self.work()
             if work.total > limit:
                 raise WorkLimitError(
-                    f"{self.model.label} would take about {_lasting(work.total)} of computing, but work_limit is "
+                    f"{self.model.label} would take about {_duration_text(work.total)} of computing, but work_limit is "
                     f"{limit:g} s: {self.reason(work)} {LIFT}"
                 )
         if self.history:
@@ -295,7 +295,7 @@ class Task:
         return 2.0 * math.pi / slowest
 
 
-def _lasting(seconds: float) -> str:
+def _duration_text(seconds: float) -> str:
     """Return a duration with a suitable unit."""
     if not math.isfinite(seconds):
         return "endless time"

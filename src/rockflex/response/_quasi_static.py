@@ -120,7 +120,7 @@ def start_moving(element: Element, place: StaticElementState, direction: int) ->
     """Return the place as the elongation begins to change, with the sign of δ'; 0 if it does not change."""
     if element.direction(place.branch) == direction:
         return place
-    branch = element.moving(element.stopped(place.branch), direction)
+    branch = element.moving(element.branch_at_rest(place.branch), direction)
     return StaticElementState(branch, static_internal_variable(element, place), place.elongation)
 
 

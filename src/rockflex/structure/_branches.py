@@ -97,7 +97,7 @@ class Element(Protocol):
         """Return δ - m where the elongation turns back on a branch that yields, which ends it; None on others."""
         ...
 
-    def stopped(self, branch: int) -> int:
+    def branch_at_rest(self, branch: int) -> int:
         """Return the branch after the elongation has stopped."""
         ...
 
@@ -180,7 +180,7 @@ class WithoutMemory(ElementDefaults):
     def reversal_offset(self, branch: int) -> float | None:
         del branch
 
-    def stopped(self, branch: int) -> int:
+    def branch_at_rest(self, branch: int) -> int:
         return branch
 
     def moving(self, branch: int, direction: int) -> int:
@@ -321,7 +321,7 @@ class YieldingElement(ElementDefaults):
         sign = self.direction(branch)
         return None if sign == 0 else sign * self.yield_force / self.stiffness - self.stretched
 
-    def stopped(self, branch: int) -> int:
+    def branch_at_rest(self, branch: int) -> int:
         return ELASTIC if branch in (UP, DOWN) else branch
 
     def moving(self, branch: int, direction: int) -> int:
@@ -420,7 +420,7 @@ class FrictionElement(ElementDefaults):
     def reversal_offset(self, branch: int) -> float | None:
         del branch
 
-    def stopped(self, branch: int) -> int:
+    def branch_at_rest(self, branch: int) -> int:
         del branch
         return HELD
 

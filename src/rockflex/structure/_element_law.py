@@ -289,7 +289,7 @@ class LawElement(ElementDefaults):
     def reversal_offset(self, branch: int) -> float | None:
         return self.parts[branch].offset if self.parts[branch].yields else None
 
-    def stopped(self, branch: int) -> int:
+    def branch_at_rest(self, branch: int) -> int:
         return self.places[self.parts[branch].turns_to] if self.parts[branch].yields else branch
 
     def moving(self, branch: int, direction: int) -> int:

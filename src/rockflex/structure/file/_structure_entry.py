@@ -159,18 +159,18 @@ class StructureEntry(_OfKinds):
         except InputError as error:
             raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
         if self.leaning_masses is not None:
-            built = _wrapped("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
+            built = _built_from_key("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
         if (stories := self.stories) is not None:
-            built = _wrapped("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
+            built = _built_from_key("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
         if (podium := self.podium) is not None:
-            built = _wrapped("podium", lambda: Podium(_floors_of(built), **podium.model_dump()))
+            built = _built_from_key("podium", lambda: Podium(_floors_of(built), **podium.model_dump()))
         if (joints := self.joints) is not None:
-            built = _wrapped("joints", lambda: Jointed(_floors_of(built), joints_at(**joints.model_dump())))
+            built = _built_from_key("joints", lambda: Jointed(_floors_of(built), joints_at(**joints.model_dump())))
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
         if (one_sided := self.one_sided) is not None:
-            built = _wrapped("one_sided", lambda: OneSided(built, **one_sided.model_dump()))
+            built = _built_from_key("one_sided", lambda: OneSided(built, **one_sided.model_dump()))
         return self.hold(built)
 
     def hold(self, built: Built) -> Built:
@@ -246,7 +246,7 @@ def _floors_of(built: Built) -> Structure:
     return built
 
 
-def _wrapped(key: str, make: Callable[[], Built]) -> Built:
+def _built_from_key(key: str, make: Callable[[], Built]) -> Built:
     try:
         return make()
     except InputError as error:
