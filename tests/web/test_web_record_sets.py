@@ -241,7 +241,7 @@ def test_the_way_from_the_first_screen_to_the_report_of_a_set(visit) -> None:
     page.wait_for_selector("#adequacy", state="attached")
     begun = time.monotonic()
     start = page.get_by_label("Start from")
-    start.select_option(label=next(each for each in start.locator("option").all_inner_texts() if "yielding" in each))
+    start.select_option(label=next(each for each in start.locator("option").all_inner_texts() if "fuses" in each))
     clicks += 2
     page.locator('[data-task="ground"] > summary').click()
     clicks += 1

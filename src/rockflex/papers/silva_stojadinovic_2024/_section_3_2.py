@@ -95,7 +95,7 @@ DISPLACEMENT_STATEMENTS = (
 SLIDING = "Friction that prevents sliding of the prototypes"
 EVERY = 3  # every third record, because the friction of a run needs its history
 FRICTION_RESAMPLES = 400
-FRICTION_COSTS = (5.0, 6.0, 5.0, 8.0, 5.0, 5.0)  # s, see Piece
+FRICTION_COSTS = (4.5, 5.5, 4.0, 9.5, 4.0, 6.0)  # s, see Piece
 SCALES = (1.0, 2.0)
 MODEL = "2DOF-C"  # with which Section 3.1 checks for sliding
 SIGNS = {"printed": "as printed", "mended": "N = Σ m_i (g + z''_i)"}
