@@ -72,7 +72,7 @@ def test_a_restitution_that_is_missing_or_of_no_use():
         law_of_name("pivot-impulse", 0.5)
     assert caught.value.field == "restitution"
     for e in (-0.1, 1.1, float("nan")):
-        with pytest.raises(rf.InputError, match=r"0 to 1|finite"):
+        with pytest.raises(rf.InputError, match=r"0, 1|finite"):
             rf.AngularMomentum(e)
 
 

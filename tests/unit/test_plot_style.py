@@ -162,6 +162,7 @@ ARGUMENTS = {
     "plot_set": lambda: (record_set(),),
     "plot_spread": lambda: spread(),
     "plot_stripes": lambda: (stripes(),),
+    "plot_tornado": lambda: (rf.tornado(wall(), RECORD, parameters={"half_width": 0.1}),),
     "plot_structure": lambda: (wall(), None, rf.simulate(wall(), RECORD, "2DOF-S")),
     "plot_tower": lambda: (tower(),),
     "plot_yielding": lambda: (yielding(),),

@@ -195,6 +195,10 @@ VALUES = {
     rf.TargetSpectrum: lambda: rf.TargetSpectrum([0.1, 1.0], [5.0, 2.0], 0.02, "site"),
     rf.Tendon: lambda: tendons()[0],
     rf.TendonLevel: lambda: rf.TendonLevel(0.5, 0.5),
+    rf.Sensitivity: lambda: response().sensitivity,
+    rf.Gradient: lambda: rf.gradient(frame(), motion(), parameters=["period"]),
+    rf.Identification: lambda: rf.identify(frame(), motion(), response().resample(motion().dt).rotation, ["period"]),
+    rf.Tornado: lambda: rf.tornado(frame(), motion(), parameters={"period": 0.1}),
     rf.UnanimousOutcome: lambda: rf.UnanimousOutcome(True, 4),
     rf.UpliftedModes: lambda: rf.uplifted_modes(frame().rocking()),
     rf.VVELComplete: rf.VVELComplete,
@@ -223,7 +227,13 @@ STUDIES = {
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics, rf.ProjectResults}  # they hold tables
+UNHASHABLE = {
+    rf.BestDesign,
+    rf.Comparison,
+    rf.PopulationStatistics,
+    rf.ProjectResults,
+    rf.Sensitivity,
+}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 

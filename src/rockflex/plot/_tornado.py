@@ -2,6 +2,7 @@
 
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from rockflex.foundation.checks import checked_instance
 from rockflex.foundation.language import translated
@@ -77,6 +78,7 @@ def plot_tornado(tornado: Tornado, *, size: Size | None = None) -> Figure:
         axes.invert_yaxis()
         low, high = float(known.values.min()) / factor, float(known.values.max()) / factor
         axes.set_xlim(min(low, middle) - 0.25 * reach, max(high, middle) + 0.25 * reach)
+        axes.xaxis.set_major_locator(MaxNLocator(4))  # the demands may differ in their last digits only
         symbol = figures.symbol_in_mathematics(output.symbol)
         median = translated("median of {n} records", n=known.n_records) if known.n_records > 1 else ""
         axes.set_xlabel(f"{symbol}{f' [{unit}]' if unit else ''}{f', {median}' if median else ''}")

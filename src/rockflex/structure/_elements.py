@@ -12,7 +12,6 @@ from rockflex.foundation.shown import shown
 from rockflex.structure._attachment import Position
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._branches import (
-    BARELY,
     ElasticElement,
     Element,
     FrictionElement,
@@ -34,6 +33,9 @@ TendonYieldRatio = Annotated[
         note="A tendon that yields keeps its plastic stretch, loses prestress and becomes slack at zero force.",
     ),
 ]
+
+
+HAIR = 1e-14  # m: a tendon without prestress is this far from slack, so that rounding at rest does not make it so
 
 
 @described
@@ -123,7 +125,7 @@ class Tendon(BaseElement):
         """Return it as its branches: elastic, slack, and those of a bar that yields or breaks."""
         if not self.dissipates:
             return ElasticElement(self.stiffness, self.initial_force, self.place)
-        stretched = max(self.initial_force / self.stiffness, BARELY)
+        stretched = max(self.initial_force / self.stiffness, HAIR)
         limit, ratio = self.yield_force, self.post_yield_ratio
         if limit is None or ratio is None:  # it snaps before any force at which it would yield
             limit, ratio = 2.0 * self.stiffness * (stretched + self.breaks_at), 0.0
