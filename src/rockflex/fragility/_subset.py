@@ -37,7 +37,8 @@ class SubsetEstimate(Value):
     Examples
     --------
     >>> import rockflex as rf
-    >>> found = rf.subset_simulation(lambda u: u.sum(axis=1) / 2.0, 4, 4.0, seed=1)
+    >>> found = rf.subset_simulation(
+    ...     lambda u: u.sum(axis=1) / 2.0, 4, 4.0, seed=1)
     >>> found.levels.size, found.n_runs
     (5, 4600)
     """
