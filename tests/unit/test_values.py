@@ -195,7 +195,7 @@ VALUES = {
     rf.TargetSpectrum: lambda: rf.TargetSpectrum([0.1, 1.0], [5.0, 2.0], 0.02, "site"),
     rf.Tendon: lambda: tendons()[0],
     rf.TendonLevel: lambda: rf.TendonLevel(0.5, 0.5),
-    rf.DistributionComparison: lambda: rf.compare_distributions(RUNS[0], 1.1 * RUNS[0], n_resamples=20),
+    rf.DistributionComparison: lambda: rf.compare_distributions(RUNS[0], 1.1 * RUNS[0], n_resamples=100),
     rf.SubsetEstimate: lambda: rf.subset_simulation(lambda u: u.sum(axis=1), 2, 3.0, n=100),
     rf.Sensitivity: lambda: response().sensitivity,
     rf.Gradient: lambda: rf.gradient(frame(), motion(), parameters=["period"]),
