@@ -89,14 +89,15 @@ static void product(int columns, int rows, const double *table, const double *x,
     }
 }
 
-
-/* to = factor · from, for at least `count` numbers; the largest magnitudes are kept. Whether one of them still changes by
-   more than rounding. */
+/* to = factor · from, for `count` numbers and what fills the last register; the largest magnitudes are kept. Whether one of
+   the numbers still changes by more than rounding: not by what is beside them, since no count of terms may depend on it. */
 static inline int follow(int count, const double *from, double factor, double *most, double *to) {
+    static const long long counted[16] = {-1, -1, -1, -1, -1, -1, -1, -1};
     mask moves = {0};
     for (int i = 0; i < count; i += LANES) {
         vec next = at(from + i) * factor, top = larger(at(most + i), absolute(next));
-        moves |= absolute(next) > top * 1e-17;
+        const int left = count - i < LANES ? count - i : LANES;
+        moves |= (absolute(next) > top * 1e-17) & *(const mask *)(counted + 8 - left);
         put(to + i, next), put(most + i, top);
     }
     return any(moves);
@@ -171,7 +172,6 @@ static int expand(const Tables *p, double h, double a, double rise, Climb v, con
         else
             rates_of(p, 0, x, z);
         for (int j = 0; j < conditions; j++) x[first + j] = z[rates + j];
-        put(z + rates, (vec){0}); /* read with the last rates: no term may depend on conditions */
         if (k + 1 == room) break;
         next = x + width;
         const double factor = h / (k + 1);

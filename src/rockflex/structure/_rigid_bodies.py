@@ -155,6 +155,7 @@ class BodyOnColumns(NamedTuple):
     restitution: float
 
 
+@explaining_overflow("The inertia of columns of this size that rock together")
 def body_on_columns(
     n_columns: int, width: float, height: float, column_mass: float, slab_mass: float, building_mass: float = 0.0
 ) -> BodyOnColumns:
