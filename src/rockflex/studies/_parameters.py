@@ -46,7 +46,6 @@ class Subject:
         kept = list[str]()
         for name in found:
             try:
-                self.place_of(name)
                 self.changed(self.place_of(name), STEP)
             except InputError:
                 continue

@@ -13,6 +13,7 @@ from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.models._label import Model, parse_model
 from rockflex.response._outputs import OUTPUTS
+from rockflex.response._respond import STATUSES
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import Motions, RockingStructure, check_keywords, checked_motions
 from rockflex.studies._parameters import SCALE, Subject
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Range = float | tuple[float, float]
+OVERTURNED = STATUSES.index("overturned")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -167,7 +169,7 @@ def tornado(
         if found.failures:
             place, error = next(iter(found.failures.items()))
             raise SolverError(f"{records[place].name}: {error}")
-        return float(np.median(found.columns[demand])), int((found.columns["status"] == 2).sum())
+        return float(np.median(found.columns[demand])), int((found.columns["status"] == OVERTURNED).sum())
 
     with reporting_progress(progress, len(cases), "cases") as advance:
         made = list(map_runs_in_order(work, iter(cases), workers, lambda _: advance(1)))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
@@ -132,31 +133,12 @@ def _sampled_base_shears(records: PaperRecords, _: int) -> "pd.DataFrame":
     for pair in range(records.pairs):
         drawn = rf.draw_prototype(records.seed, pair, len(suite))
         frame, motion = drawn.frame(), suite[drawn.record]
-        bare = _without_floors(frame.rocking())
+        bare = replace(frame.rocking(), floors=None)  # the peaks of floors take longer than the run
         runs = {name: rf.simulate(bare, motion, model) for name, model in SAMPLED_MODELS.items()}
         if runs["mdof"].status == "rocking" and runs["2dof"].status != "overturned":
             weight = frame.n_stories * frame.story_mass * GRAVITY
             rows.append({"pair": pair, **{name: _sampled_base_shear(run) / weight for name, run in runs.items()}})
     return pd.DataFrame(rows, columns=["pair", *SAMPLED_MODELS])
-
-
-def _without_floors(properties: rf.RockingProperties) -> rf.RockingProperties:
-    """Return properties without those of floors, whose peaks take longer than the run."""
-    p = properties
-    return rf.RockingProperties(
-        omega=p.omega,
-        effective_mass=p.effective_mass,
-        effective_height=p.effective_height,
-        top_ordinate=p.top_ordinate,
-        i_theta=p.i_theta,
-        l0r=p.l0r,
-        m_tot=p.m_tot,
-        half_width=p.half_width,
-        zeta=p.zeta,
-        translational_inertia=p.translational_inertia,
-        top_height=p.top_height,
-        base_mass=p.base_mass,
-    )
 
 
 def _sampled_base_shear(run: rf.Response) -> float:
