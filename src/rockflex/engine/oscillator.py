@@ -13,7 +13,7 @@ if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.libc.math import atan, cos, exp, fabs, hypot, sin, sqrt
 else:
-    from rockflex.engine.loops_twin import PyErr_CheckSignals
+    from rockflex.engine.loops import PyErr_CheckSignals
 
 PI = cython.declare(cython.double, pi)
 ENDLESS = cython.declare(cython.double, np.inf)

@@ -12,7 +12,6 @@ import numpy as np
 
 from rockflex.engine import failures
 from rockflex.engine.rest import PhaseDecay
-from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
 from rockflex.foundation.errors import InputError
@@ -23,14 +22,15 @@ if cython.compiled:
     from cython.cimports.rockflex.engine.batch import Batch
     from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
-    from cython.cimports.rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases
+    from cython.cimports.rockflex.engine.levels import ASKED, BLOCK, ENDS, UNKNOWN
+    from cython.cimports.rockflex.engine.loops import Peaks, Phases
     from cython.cimports.rockflex.engine.rest import PhaseDecay
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
     from rockflex.engine.flow import Flow
     from rockflex.engine.journal import Journal
-    from rockflex.engine.loops_twin import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
+    from rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
     from rockflex.engine.series import Series
 
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
@@ -225,8 +225,7 @@ class Run:
         if not self.phases.has_tables(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            tables = shaken_of(self.met[place][1], self.h, self.phases.parts(place))
-            self.phase_bytes += self.phases.set_vertical_tables(place, self.which, tables)
+            self.phase_bytes += self.phases.shake(place, self.which, self.met[place][1], self.h)
         return 0
 
     def prepare(self, key, place):
