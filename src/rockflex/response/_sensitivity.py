@@ -26,8 +26,8 @@ SAME = 1e-9  # of a time step: instants that are one
 FLAGGED = 10.0  # elasticity from which on 1 % of the record moves a peak by more than 10 %
 DERIVED = (
     "max_rotation", *(f"max_{name}" for name in GLOBAL), "min_vertical_reaction", "max_tendon_force",
-    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "max_slip", "residual_slip",
-    "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
+    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "min_joint_force",
+    "max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
 )  # fmt: skip
 """The numbers of a response that have derivatives."""
 
