@@ -159,6 +159,20 @@ def warnings_of_law(model: RockingModel) -> tuple[str, ...]:
     )
 
 
+def warnings_of_sensitivity(run: "Response") -> tuple[str, ...]:
+    """Return a text if 1 % of its record moves a peak of a run with a history by more than 10 %.
+
+    There is none of a model that is not linear between events, whose sensitivity is not known.
+    """
+    if run.history is None:
+        return ()
+    try:
+        note = run.history.sensitivity.note
+    except InputError:
+        return ()
+    return (note,) if note else ()
+
+
 def warnings_of_run(run: "Response", units: UnitSystem = SI) -> tuple[str, ...]:
     """Return the warnings of the peaks and, of a run with a history, of its energies."""
     found = warnings_of_response(run.model, run.peaks(), units)
