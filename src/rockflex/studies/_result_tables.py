@@ -187,8 +187,8 @@ class PivotLifts(NamedTuple):
         if self.joints:
             found.append(
                 translated(
-                    "{structure}, {model}: in {k} of {n} runs that rock and stand a joint above the base would lift off "
-                    "(min_joint_force below zero). Read what follows in such a run with care.",
+                    "{structure}, {model}: in {k} of {n} runs that rock and stand a joint above the base would lift "
+                    "off (min_joint_force below zero). Read what follows in such a run with care.",
                     structure=self.structure,
                     model=self.model,
                     k=self.joints,
