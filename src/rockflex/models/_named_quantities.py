@@ -129,8 +129,14 @@ def modal_displacement(model: RockingModel, mode: int) -> Quantities:
 
 def joint_rotations(model: RockingModel) -> Quantities:
     """Return the rotation of each joint above the base in rad."""
-    count = len(model.properties.joints)
+    count = len(model.joints)
     return Quantities.of(count, model.properties.n_modes, joint=np.eye(count))
+
+
+def joint_forces(model: RockingModel) -> Quantities:
+    """Return the axial force of each joint above the base in N, positive where it is pressed."""
+    count = len(model.joints)
+    return Quantities.of(count, model.properties.n_modes, joint_force=np.eye(count))
 
 
 def rotation_by_side(model: RockingModel) -> Quantities:

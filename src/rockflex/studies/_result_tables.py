@@ -155,13 +155,14 @@ def _has_dissipating_elements(properties: RockingProperties) -> bool:
     return any(each.dissipates or not each.prestressed for each in properties.elements)
 
 
-REACTION = "min_vertical_reaction"
+REACTION, JOINT_FORCE = "min_vertical_reaction", "min_joint_force"
 
 
 class PivotLifts(NamedTuple):
     """Numbers of runs of a case that rock and stand: all, whose pivot would lift, beyond α, and that may fall.
 
-    The last number is that of runs that overturn by a model for small rotations.
+    The last numbers are those of runs that overturn by a model for small rotations, and in which a joint above the base
+    would lift off.
     """
 
     structure: str
@@ -171,6 +172,7 @@ class PivotLifts(NamedTuple):
     beyond: int = 0
     falling: int = 0
     overturned: int = 0
+    joints: int = 0
 
     def __str__(self) -> str:
         return " ".join(self.warnings)
@@ -190,6 +192,17 @@ class PivotLifts(NamedTuple):
                     k=self.lifting,
                     n=self.rocking,
                     column=REACTION,
+                )
+            )
+        if self.joints:
+            found.append(
+                translated(
+                    "{structure}, {model}: in {k} of {n} runs that rock and stand a joint above the base would lift "
+                    "off (min_joint_force below zero). Read what follows in such a run with care.",
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.joints,
+                    n=self.rocking,
                 )
             )
         if self.beyond:
@@ -246,5 +259,7 @@ def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())
         falling = int(each["may_fall"].sum()) if "may_fall" in each else 0
-        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past, falling, fell))
+        joints = int((each[JOINT_FORCE] < 0.0).sum()) if JOINT_FORCE in each else 0
+        lifting = int((each[REACTION] < 0.0).sum())
+        found.append(PivotLifts(structure, model, len(each), lifting, past, falling, fell, joints))
     return found
