@@ -193,6 +193,7 @@ from .studies import CombinedPeaks as CombinedPeaks
 from .studies import Gradient as Gradient
 from .studies import Identification as Identification
 from .studies import InitialState as InitialState
+from .studies import KinematicCheck as KinematicCheck
 from .studies import OverturningScales as OverturningScales
 from .studies import Records as Records
 from .studies import SecondMode as SecondMode
@@ -203,6 +204,7 @@ from .studies import fill_study as fill_study
 from .studies import frequency_ratios as frequency_ratios
 from .studies import gradient as gradient
 from .studies import identify as identify
+from .studies import kinematic_check as kinematic_check
 from .studies import load_study as load_study
 from .studies import modal_combination as modal_combination
 from .studies import moment_rotation as moment_rotation

@@ -200,6 +200,7 @@ VALUES = {
     rf.Sensitivity: lambda: response().sensitivity,
     rf.Gradient: lambda: rf.gradient(frame(), motion(), parameters=["period"]),
     rf.Identification: lambda: rf.identify(frame(), motion(), response().resample(motion().dt).rotation, ["period"]),
+    rf.KinematicCheck: lambda: rf.kinematic_check(rf.rigid_block(width=0.6, height=6.0, mass=7e3), rf.ec8_spectrum(2)),
     rf.Tornado: lambda: rf.tornado(frame(), motion(), parameters={"period": 0.1}),
     rf.UnanimousOutcome: lambda: rf.UnanimousOutcome(True, 4),
     rf.UpliftedModes: lambda: rf.uplifted_modes(frame().rocking()),

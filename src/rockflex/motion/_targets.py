@@ -119,7 +119,7 @@ def ec8_spectrum(
         )
     reference = checked_positive("ag", ag, "m/s²")
     zeta = checked_spectrum_damping(damping_ratio)
-    eta = _damping_correction(zeta)
+    eta = damping_correction(zeta)
     soil, t_b, t_c, t_d = table[ground]
     zero = checked_positive("importance", importance, "") * reference * soil
     top = 2.5 * eta * zero
@@ -128,7 +128,7 @@ def ec8_spectrum(
     return TargetSpectrum([0.0, t_b, t_c, t_d, _EC8_END], sa, zeta, name)
 
 
-def _damping_correction(damping_ratio: float) -> float:
+def damping_correction(damping_ratio: float) -> float:
     """Factor η of both generations of Eurocode 8 on the plateau."""
     return max(math.sqrt(10.0 / (5.0 + 100.0 * damping_ratio)), 0.55)
 
@@ -325,7 +325,7 @@ def ec8_second_spectrum(
             field="s_beta",
         )
     zeta = checked_spectrum_damping(damping_ratio)
-    eta = _damping_correction(zeta)
+    eta = damping_correction(zeta)
     rise = np.geomspace(_T_A, t_b, _N_RISING)
     share = (rise - _T_A) / (t_b - _T_A)
     rising = plateau * (eta * share + (1.0 - share) / _F_A)

@@ -168,7 +168,7 @@ def _static_path_about_pivots(
     yield CLOSED, 0.0, bool(rotations[0] == 0.0), places
     before = CLOSED
     for side, start, end, given in _monotonic_segments(rotations):
-        leg = _leg(elements, arms[side], places, start, end, lifts=side != before) if side != CLOSED else []
+        leg = slow_turn(elements, arms[side], places, start, end, lifts=side != before) if side != CLOSED else []
         for reached, places in leg[:-1]:
             yield side, reached, False, places
         places = leg[-1][1] if leg else places
@@ -188,7 +188,7 @@ def _monotonic_segments(rotations: Array) -> Iterator[tuple[int, float, float, b
         known = rotation
 
 
-def _leg(
+def slow_turn(
     elements: tuple[Element, ...],
     arms: tuple[float, ...],
     places: tuple[StaticElementState, ...],
@@ -197,7 +197,10 @@ def _leg(
     *,
     lifts: bool,
 ) -> list[tuple[float, tuple[StaticElementState, ...]]]:
-    """Return the points from one |θ| to another about one pivot; the first only if forces jump or the base lifts."""
+    """Return the points from one |θ| to another about one pivot; the first only if forces jump or the base lifts.
+
+    `arms` are the elongations of the elements for a unit of |θ|, in m, and `places` where they are at the start.
+    """
     turn, near = int(np.sign(end - start)), TOLERANCE * max(start, end)
     if turn == 0:
         return [(end, places)]

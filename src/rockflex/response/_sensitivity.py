@@ -26,8 +26,8 @@ SAME = 1e-9  # of a time step: instants that are one
 FLAGGED = 10.0  # elasticity from which on 1 % of the record moves a peak by more than 10 %
 DERIVED = (
     "max_rotation", *(f"max_{name}" for name in GLOBAL), "min_vertical_reaction", "max_tendon_force",
-    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "max_slip", "residual_slip",
-    "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
+    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "min_joint_force",
+    "max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
 )  # fmt: skip
 """The numbers of a response that have derivatives."""
 
@@ -180,7 +180,9 @@ def _is_peak(name: str) -> bool:
 def _run_of_history(states: Array) -> tuple[Excitation, float, float]:
     """What shook the run of a history, its time step, and the free vibration after it in s."""
     times, shaken = states[:, TIME], states[:, (GROUND, RISE)]
-    step = float(np.median(np.diff(np.unique(times))))
+    instants, states_at = np.unique(times, return_counts=True)
+    single = instants[states_at == 1]  # the time of an event occurs twice, and there may be many within a sample
+    step = float(np.median(np.diff(single if single.size > 1 else instants)))
     count = round(float(times[-1]) / step)
     step = float(times[-1]) / count if abs(times[-1] / count - step) < SAME * step else step
     count = math.ceil(float(times[-1]) / step - SAME)

@@ -5,6 +5,8 @@ from ._gradient import gradient as gradient
 from ._gradient import parameter_names as parameter_names
 from ._identify import Identification as Identification
 from ._identify import identify as identify
+from ._kinematic_check import KinematicCheck as KinematicCheck
+from ._kinematic_check import kinematic_check as kinematic_check
 from ._modal_combination import CombinedPeaks as CombinedPeaks
 from ._modal_combination import SecondMode as SecondMode
 from ._modal_combination import frequency_ratios as frequency_ratios
