@@ -55,7 +55,7 @@ def test_code_of_the_readme_runs_and_prints_what_it_says(tmp_path, monkeypatch):
     parts[::2] = [INDENTED.sub(console, prose) for prose in parts[::2]]
     page.write_text("".join(parts), "utf-8")
     commands = [block.source for block in blocks_of(page.read_text("utf-8")) if block.language == "console"]
-    assert sum(text.count("$ rockflex ") for text in commands) == 10
+    assert sum(text.count("$ rockflex ") for text in commands) == 11
     told = [(block, printed) for block, printed in run_page(page, tmp_path) if block.output is not None]
     assert len(told) == 1
     for block, printed in told:

@@ -216,6 +216,15 @@ def test_the_sensitivity_of_a_history_is_the_gradient_by_the_scale():
         assert run.sensitivity["max_base_moment"] == pytest.approx(found.elasticity("max_base_moment")[0], rel=1e-9)
 
 
+def test_more_impacts_than_samples_do_not_hide_the_time_step():
+    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    motion, impact = rf.load_suite("el-centro-1940")[0], rf.Restitution(0.9)
+    run = rf.simulate(frame, motion, "2DOF-S", impact=impact, free_vibration=2.0)
+    assert np.median(np.diff(np.unique(run.time))) < 0.6 * motion.dt
+    found = rf.gradient(frame, motion, "2DOF-S", [], impact=impact, free_vibration=2.0)
+    assert run.sensitivity["max_rotation"] == pytest.approx(found.elasticity("max_rotation")[0], rel=1e-6)
+
+
 def test_an_overturning_run_ends_at_the_same_rotation():
     found = rf.gradient(FRAME, rf.load_suite("el-centro-1940")[0].scaled(20.0), parameters=["period"])
     assert found.response.status == "overturned"

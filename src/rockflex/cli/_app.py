@@ -11,7 +11,19 @@ import typer
 from typer.core import TyperGroup
 
 from rockflex import __version__
-from rockflex.cli import _animate, _check, _compare, _modes, _motion, _project, _reproduce, _run, _select, _study
+from rockflex.cli import (
+    _animate,
+    _check,
+    _compare,
+    _modes,
+    _motion,
+    _project,
+    _reproduce,
+    _run,
+    _select,
+    _study,
+    _tornado,
+)
 from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
 from rockflex.foundation.errors import InputError, SolverError, system_error_text
@@ -79,6 +91,8 @@ rockflex check structure.toml chosen --rule ec8 --limits limits.toml
 
 rockflex compare a.toml b.toml fema-p695-far-field --report compared.html
 
+rockflex tornado structure.toml fema-p695-far-field --parameter period=0.2
+
 rockflex project new pier.rockflex a.toml b.toml chosen --rule ec8
 
 rockflex cloud study.toml --out study
@@ -127,6 +141,7 @@ app = typer.Typer(
 app.command("run", cls=ReportCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("check", cls=RunCommand, epilog=_check.EPILOG, no_args_is_help=True)(_check.check)
 app.command("compare", cls=_compare.CompareCommand, epilog=_compare.EPILOG, no_args_is_help=True)(_compare.compare)
+app.command("tornado", cls=RunCommand, epilog=_tornado.EPILOG, no_args_is_help=True)(_tornado.tornado)
 app.add_typer(_project.app, name="project")
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)

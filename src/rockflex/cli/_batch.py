@@ -37,7 +37,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import OnError
 from rockflex.response._friction import friction_coefficient
 from rockflex.response._respond import BY_STORY, story_results
-from rockflex.response._response import PEAKS, Response
+from rockflex.response._response import PEAKS, Response, warnings_of_sensitivity
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_file import read_toml_file
 from rockflex.studies._arguments import (
@@ -52,6 +52,7 @@ from rockflex.studies.case import Case, CaseRuns, case_in_file
 from rockflex.studies.parallel import map_runs_in_order
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
+MAX_NOTED_RUNS = 12  # runs; of more, none by itself is what is read
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,11 @@ class RunBatch:
     workers: int | None = None
     friction: float | None = None
     """Coefficient of friction at which sliding is reported, or None."""
+
+    @property
+    def noted(self) -> bool:
+        """Whether a run says so where it depends on the scale of its record by much."""
+        return self.size <= MAX_NOTED_RUNS
 
     def case(self, model: str) -> PreparedCase:
         """Return the case of one model, with its history where that is written or the friction is needed."""
@@ -102,6 +108,8 @@ class BatchRun:
     """Seconds; None where runs were shared among threads."""
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and the time at which sliding would start, by name; empty unless requested."""
+    note: tuple[str, ...] = ()
+    """What its sensitivity to the record says in words."""
     elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
     """Peaks of each element, its energy of a run with a history, and what is left of each story, by name."""
 
@@ -140,8 +148,11 @@ class BatchRun:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Demands of the run that the ground or its tendons cannot meet; with a history also energies in imbalance."""
-        return () if self.response is None else self.response.warnings
+        """Demands of the run that the ground or its tendons cannot meet; with a history also energies in imbalance.
+
+        Where few runs are made, also that 1 % of the record moves a peak by much.
+        """
+        return () if self.response is None else (*self.response.warnings, *self.note)
 
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
@@ -203,7 +214,20 @@ def _run_one_of_batch(
     if batch.properties.stories and response.ductility.size:
         elements |= {name: getattr(response, name).tolist() for name in BY_STORY}
     kept = response if batch.history else replace(response, history=None)
-    return replace(made, response=kept, run_time=elapsed, friction=friction, elements=elements)
+    note = _note_of_run(case, motion, scale, response) if batch.noted else ()
+    return replace(made, response=kept, run_time=elapsed, friction=friction, elements=elements, note=note)
+
+
+def _note_of_run(case: PreparedCase, motion: GroundMotion, scale: float, response: Response) -> tuple[str, ...]:
+    """Return what the sensitivity of a run says in words; of one without a history by running it once more."""
+    if case.model.integrated:
+        return ()
+    if response.history is None:
+        try:
+            response = replace(case, history=True, work_limit=None).run(motion, scale)
+        except (InputError, SolverError):  # the run itself is solved, and needs no note
+            return ()
+    return warnings_of_sensitivity(response)
 
 
 FLAGS = {"free_vibration": "--free-vibration", "scales": "--scale", "mu": "--friction"}

@@ -56,6 +56,17 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 model=model,
             )
         )
+    if peaks["min_joint_force"] < 0.0:
+        found.append(
+            translated(
+                "The axial force of a joint above the base falls to {force} at {time:.4g} s: {model} pulls what is "
+                "above down there, which no joint can. It would lift off, and what follows is to be read with care. "
+                "Give it a tendon with more prestress, or fewer joints.",
+                force=text("min_joint_force"),
+                time=peaks["time_of_min_joint_force"],
+                model=model,
+            )
+        )
     if peaks["tendon_overload"]:
         found.append(
             translated(
@@ -146,6 +157,20 @@ def warnings_of_law(model: RockingModel) -> tuple[str, ...]:
             effective=effective,
         ),
     )
+
+
+def warnings_of_sensitivity(run: "Response") -> tuple[str, ...]:
+    """Return a text if 1 % of its record moves a peak of a run with a history by more than 10 %.
+
+    There is none of a model that is not linear between events, whose sensitivity is not known.
+    """
+    if run.history is None:
+        return ()
+    try:
+        note = run.history.sensitivity.note
+    except InputError:
+        return ()
+    return (note,) if note else ()
 
 
 def warnings_of_run(run: "Response", units: UnitSystem = SI) -> tuple[str, ...]:
@@ -289,6 +314,8 @@ class Response(HtmlTable, Value):
     residual_rotation: float
     balance_ratio: float
     max_joint_rotation: float
+    min_joint_force: float
+    time_of_min_joint_force: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float

@@ -27,8 +27,8 @@ FLAGGED = 10.0  # elasticity from which on 1 % of the record moves a peak by mor
 KEPT = 4  # models that are prepared for further sensitivities
 DERIVED = (
     "max_rotation", *(f"max_{name}" for name in GLOBAL), "min_vertical_reaction", "max_tendon_force",
-    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "max_slip", "residual_slip",
-    "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
+    "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "min_joint_force",
+    "max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement", "leaning_push", "column_pull",
 )  # fmt: skip
 """The numbers of a response that have derivatives."""
 
@@ -195,8 +195,9 @@ def _is_peak(name: str) -> bool:
 def _run_of_history(states: Array) -> tuple[Excitation, float, float]:
     """What shook the run of a history, its time step, and the free vibration after it in s."""
     times = np.ascontiguousarray(states[:, TIME])
-    lengths = np.diff(times)
-    lengths = lengths[lengths > 0.0]
+    apart = np.concatenate(((True,), np.diff(times) > 0.0, (True,)))
+    single = times[apart[:-1] & apart[1:]]  # the time of an event occurs twice, and there may be many within a sample
+    lengths = np.diff(single if single.size > 1 else times[apart[1:]])
     step = float(np.partition(lengths, lengths.size // 2)[lengths.size // 2])
     count = round(float(times[-1]) / step)
     step = float(times[-1]) / count if abs(times[-1] / count - step) < SAME * step else step

@@ -24,7 +24,7 @@ from rockflex.web._jobs import RunsJob
 from rockflex.web._projects import project_file
 from rockflex.web._record_sets import RECORD_SET_PAGE
 from rockflex.web._refusal import Refusal, errors_as_refusals, storage_as_refusals, temporary_folder
-from rockflex.web._response import is_long_run_report, simulate_state_models
+from rockflex.web._response import is_long_run, simulate_state_models
 from rockflex.web._script import response_script, selection_script
 from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
 from rockflex.web._state import PageState
@@ -59,7 +59,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             units=state.units,
             language=state.language,
             **head,
-            omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
+            omitted=[response.model for response in found if is_long_run(response, acting, state)],
             limits=state.check_limits(),
         )
     return "report.html", text

@@ -20,7 +20,7 @@ from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._history import History
 from rockflex.response._limit_checks import NO_LIMIT, check, check_in_units
 from rockflex.response._record_set import RecordSet
-from rockflex.response._response import Response, warnings_of_energy, warnings_of_response
+from rockflex.response._response import Response, warnings_of_energy, warnings_of_response, warnings_of_sensitivity
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._prepared_case import PreparedCase
 from rockflex.web._earthquake import chosen_motion
@@ -192,6 +192,7 @@ def response_view(
     energy, curves = _energy_view(motion, main, state), [response_curves(built, response, drawn) for response in found]
     for each, run in zip(curves, found, strict=True):
         each["warnings"] = warnings_of_response(run.model, run.peaks(), UnitSystem(state.units))
+        each["warnings"] += () if is_long_run(run, motion, state) else warnings_of_sensitivity(run)
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
@@ -358,8 +359,8 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
         raise Refusal({"energy": "the energy is not computed here for so many or such fast modes over so long a time."})
 
 
-def is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
-    """Whether the energies of a run would take too long for its report."""
+def is_long_run(response: Response, motion: GroundMotion, state: PageState) -> bool:
+    """Whether the energies of a run, or its sensitivity, would take too long for an answer or a report."""
     try:
         check_work_of_energy(response, motion, state)
     except Refusal:

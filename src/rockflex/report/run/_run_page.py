@@ -35,7 +35,12 @@ from rockflex.report.run._sheet import (
 from rockflex.response._friction import friction_coefficient
 from rockflex.response._limit_checks import CheckLimits, check
 from rockflex.response._outputs import legend
-from rockflex.response._response import Response, warnings_of_response, warnings_of_run
+from rockflex.response._response import (
+    Response,
+    warnings_of_response,
+    warnings_of_run,
+    warnings_of_sensitivity,
+)
 from rockflex.structure._structure import structure_warnings
 
 _FEW = 4  # elements, whose loops are readable in half a sheet
@@ -173,7 +178,7 @@ def warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str
         for text in (
             warnings_of_response(run.model, run.peaks(), report.units)
             if label in omitted
-            else warnings_of_run(run, report.units)
+            else (*warnings_of_run(run, report.units), *warnings_of_sensitivity(run))
         ):
             found.setdefault(text, []).append(label)
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
