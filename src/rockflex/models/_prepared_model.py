@@ -3,7 +3,6 @@
 import math
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from threading import Lock
 from typing import Any, cast
@@ -141,14 +140,7 @@ class PreparedModel:
     @cached_property
     def cost_model(self) -> CostModel:
         """The properties that determine the work of runs."""
-        p, found = self.model.properties, cost_model_of(self.model, self.n_peaks + 1)
-        if self.model.integrated:
-            return found
-        levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
-        free = min([p.pivot(side).i_theta for side in self.model.sides[1:]], default=np.inf) - levers.sum()
-        # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
-        fades = float(drag @ (1.0 + levers / free))
-        return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
+        return cost_model_of(self.model, self.n_peaks + 1)
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
@@ -158,12 +150,11 @@ class PreparedModel:
         self, run: Excitation, dt: float, free_vibration: float | None, *, history: bool, limit: float | None
     ) -> None:
         """Raise `WorkLimitError` as `Task.check` does; of runs that are equally much work only the first is asked."""
-        # With a hysteresis that flows, the work depends on every sample.
-        size = None if self.cost_model.flow else (run.acceleration.size, dt, free_vibration, history, limit)
+        size = run.acceleration.size, dt, free_vibration, history, limit
         if size in self._accepted:
             return
         self.task(run, dt, free_vibration, history=history).check(limit)
-        if size is not None:
+        if not self.cost_model.flow:  # with a hysteresis that flows, the work depends on every sample
             if len(self._accepted) >= SIZES:
                 self._accepted.clear()
             self._accepted.add(size)

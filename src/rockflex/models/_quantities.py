@@ -108,7 +108,9 @@ class Quantities:
 
 def _joint_shares(count: int, *shares: Mapping[str, ArrayLike]) -> Array:
     """Return blank weights for the joints of some shares, as many as the most that one names."""
-    most = max([np.shape(given[name])[-1] for given in shares for name in OF_JOINTS if name in given], default=0)
+    most = max(
+        [np.shape(share)[-1] for given in shares for name, share in given.items() if name in OF_JOINTS], default=0
+    )
     return np.zeros((count, len(OF_JOINTS), most))
 
 
@@ -124,14 +126,14 @@ def collected_quantities(modes: int, shares: Sequence[Share]) -> Quantities:
     count, columns = len(shares), _columns(modes)
     values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
     joints = _joint_shares(count, *(given for _, given in shares))
-    for row, shift, joint, (_, given) in zip(values, shifts, joints, shares, strict=True):
+    for k, (_, given) in enumerate(shares):
         for name, share in given.items():
-            if name in OF_JOINTS:
-                joint[OF_JOINTS.index(name), : np.shape(share)[-1]] = share
+            if name in columns:
+                values[k, columns[name]] = share
             elif name in OF_SHIFT:
-                shift[OF_SHIFT.index(name)] = share
+                shifts[k, OF_SHIFT.index(name)] = share
             else:
-                row[columns[name]] = share
+                joints[k, OF_JOINTS.index(name), : np.shape(share)[-1]] = share
     kinds = np.array([kind for kind, _ in shares], dtype=np.int64)
     return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, joints, kinds)
 

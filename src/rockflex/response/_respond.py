@@ -91,6 +91,8 @@ _values_of = attrgetter(*NAMES)
 MAX_OF_STORIES = ("max_ductility", "max_residual_drift_ratio")
 BY_STORY = ("ductility", "residual_drift")
 
+OF_MOVING_BASES = outputs_of("sliding", "springs", "joints")
+
 Columns = dict[str, NDArray[Any]]
 
 
@@ -183,7 +185,7 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
+        **dict.fromkeys(OF_MOVING_BASES, nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
         "column_pull": np.array(

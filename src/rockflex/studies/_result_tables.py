@@ -1,7 +1,7 @@
 """Tables of results: the same columns in every chunk, with missing values where a run could not be solved."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -79,23 +79,33 @@ def pandas_columns(values: Table, columns: Columns, missing: "NDArray[np.bool_]"
     """
     import pandas as pd
 
+    everywhere, some = np.ones_like(missing), missing.any()
+
     def column(name: str, kind: type | Sequence[str]) -> Any:
         given: Any = values.get(name)
-        absent = missing if given is not None else np.ones_like(missing)
+        absent = missing if given is not None else everywhere
         known = np.zeros(missing.size) if given is None else given
         if kind is str:
             return pd.array([None] * missing.size if given is None else given, dtype=pd.StringDtype())
         if kind is float:
-            return np.where(absent, np.nan, known)
+            return np.where(absent, np.nan, known) if some or given is None else known.astype(float, copy=False)
         if kind is int:
             return pd.arrays.IntegerArray(known.astype(np.int64), absent.copy())
         if kind is bool:
             return pd.arrays.BooleanArray(known.astype(np.bool_), absent.copy())
         assert not isinstance(kind, type)
         codes = np.where(absent, -1, known).astype(np.int64)
-        return pd.Categorical.from_codes(codes, dtype=pd.CategoricalDtype(list(kind)))
+        return pd.Categorical.from_codes(codes, dtype=categories_of(tuple(kind)))
 
     return {name: column(name, kind) for name, kind in columns.items()}
+
+
+@lru_cache(maxsize=64)
+def categories_of(names: tuple[str, ...]) -> "pd.CategoricalDtype":
+    """Return the type of a column of names, of which pandas checks that they differ."""
+    import pandas as pd
+
+    return pd.CategoricalDtype(list(names))
 
 
 # Every number and flag of a Response, by its name.
