@@ -17,8 +17,14 @@ from rockflex.web._links import _can_be_drawn
 from rockflex.web._script import _structure_code_lines
 
 FRAME = {
-    **{"n_stories": 3, "story_height": 3.0, "story_mass": 40e3, "base_mass": 60e3, "stiffness_ratio": float("inf")},
-    **{"period": 0.5, "aspect_ratio": 5.0, "damping_ratio": 0.03},
+    "n_stories": 3,
+    "story_height": 3.0,
+    "story_mass": 40e3,
+    "base_mass": 60e3,
+    "stiffness_ratio": float("inf"),
+    "period": 0.5,
+    "aspect_ratio": 5.0,
+    "damping_ratio": 0.03,
 }
 VALUES: dict[str, Any] = {
     "leaning_masses": [10e3, 20e3, 0.0],
