@@ -125,6 +125,37 @@ def test_quantities_follow_from_the_motion_of_the_floors() -> None:
     assert abs(run.max_total_top_displacement) >= np.abs(moved[:, -1]).max() * (1.0 - 1e-12)
 
 
+@pytest.mark.parametrize("vertical", [None, 0.5])
+def test_what_presses_on_a_joint_is_what_the_ground_carries_but_for_what_is_below(vertical: float | None) -> None:
+    held = [rf.Tendon(60e3, 5e6, position=0.2), rf.YieldingDissipator(2e7, 30e3, position=-0.5)]
+    motion = RECORD if vertical is None else RECORD.with_vertical(RECORD.scaled(vertical))
+    run = rf.simulate(rf.Restrained(rf.Jointed(FRAME, JOINT), held), motion, output="history")
+    history = run.history
+    assert history is not None
+    below = 60e3 + 40e3  # the base and the first floor; the second stands on the joint
+    rise = FRAME.rocking().half_width * np.sign(run.rotation) * history.rotation_acceleration
+    carried = below * (9.81 + history.vertical_ground_acceleration + rise) + run.element_force[:, 1]
+    moves = np.diff(run.time) > 0.0
+    inside = np.append(moves, False) & np.append(False, moves)
+    expected = (history.vertical_reaction - carried)[inside]
+    np.testing.assert_allclose(history.joint_force[inside, 0], expected, rtol=1e-8, atol=1e-2)
+    assert run.min_joint_force <= expected.min() + 1e-2
+    assert run.min_joint_force < 120e3 * 9.81 + 60e3
+
+
+def test_a_joint_that_would_lift_off_warns(tmp_path: Path) -> None:
+    wall, down = rf.Jointed(FRAME, JOINT), RECORD.with_vertical(RECORD.scaled(2.5))
+    for motion, lifts in ((RECORD.scaled(0.05), False), (down, True)):
+        run = rf.simulate(wall, motion, output="history")
+        assert (run.min_joint_force < 0.0) == lifts == any("joint above the base" in text for text in run.warnings)
+        assert rf.Response.load(run.save(tmp_path / "run.npz")).warnings == run.warnings
+    assert run.history is not None
+    near = np.abs(run.time - run.time_of_min_joint_force) <= 2.0 * motion.dt
+    np.testing.assert_allclose(run.history.joint_force[near].min(), run.min_joint_force, rtol=0.05)
+    assert rf.simulate(FRAME, down).min_joint_force == 0.0
+    assert rf.simulate_many(wall, [down], "MDOF-S")["min_joint_force"].iloc[0] == run.min_joint_force
+
+
 def test_a_saved_response_and_a_file_keep_the_joints(tmp_path: Path) -> None:
     structure = rf.Jointed(FRAME, [JOINT])
     run = rf.simulate(structure, RECORD, output="history")

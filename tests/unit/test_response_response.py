@@ -78,7 +78,14 @@ def test_no_quantity_is_forgotten():
     """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
     own = [(name, kind) for name, kind in vars(rf.History).items() if not name.startswith("_")]
     public = {name for name, kind in own if isinstance(kind, property | cached_property)}
-    assert public == {*QUANTITIES, "soil_pressure", "bearing_pressure", "joint_rotation", "permanent_settlement"}
+    assert public == {
+        *QUANTITIES,
+        "soil_pressure",
+        "bearing_pressure",
+        "joint_rotation",
+        "joint_force",
+        "permanent_settlement",
+    }
     methods = {name for name, kind in own if isfunction(kind)}
     assert methods == set(METHODS)
     for name in (*QUANTITIES, *METHODS):

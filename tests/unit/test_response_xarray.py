@@ -29,6 +29,7 @@ def test_a_data_set_has_all_quantities_labelled(response):
         "bearing_pressure",
         "spring_force",
         "joint_rotation",
+        "joint_force",
         "permanent_settlement",
     }
     assert data.attrs == {"model": "3DOF-S"}

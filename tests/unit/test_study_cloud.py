@@ -385,6 +385,12 @@ def test_runs_beyond_the_balance_rotation_are_counted_and_told() -> None:
     assert [(each.beyond, each.overturned) for each in complete] == [(0, 0), (0, 0)]
 
 
+def test_runs_in_which_a_joint_would_lift_off_are_counted_and_told() -> None:
+    first, second = count_pivot_lifts(RUNS.assign(min_joint_force=[-1.0, 2.0, -1.0, None, 0.0, 0.0]))
+    assert (first.joints, second.joints) == (1, 0)
+    assert "joint above the base" in str(first)
+
+
 def test_runs_that_overturn_by_a_simplified_model_or_may_still_fall_are_counted_and_told() -> None:
     first, second = count_pivot_lifts(RUNS.assign(may_fall=[True, False, True, None, False, False]))
     assert (first.falling, first.overturned, second.falling, second.overturned) == (1, 1, 0, 0)

@@ -131,7 +131,7 @@ def test_work_grows_with_what_it_is_said_to_grow_with() -> None:
     for samples, power in ((10**6, 1.7), (0, 2.9)):
         assert more.work(samples, 0.01, history=False).total > 2**power * many.work(samples, 0.01, history=False).total
     assert many.work(0, 1e-3, history=False).total < 0.5 * many.work(0, 0.01, history=False).total  # no fast modes
-    assert replace(known, dense=True).work(1, 1.0, history=False).total > known.work(1, 1.0, history=False).total
+    assert replace(known, fading=3e4).work(1, 1.0, history=False).total > known.work(1, 1.0, history=False).total
     assert replace(known, fastest=math.nan).work(1, 1.0, history=False).total == math.inf
 
 

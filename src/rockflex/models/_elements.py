@@ -191,10 +191,13 @@ def elongation_rows_of_attached(properties: RockingProperties, layout: StateLayo
     """Return the elongations of attached elements and stories in m by their places, as rows, shape (C,)."""
     found, stories = dict[int, Array](), len(properties.elements)
     places = [k for k, each in enumerate(properties.elements) if each.attached]
+    places += range(stories, stories + len(properties.stories))
+    if not places:
+        return found
     floors = properties.floors
     n = layout.modes
     shapes = np.zeros((1, n)) if floors is None else np.vstack((np.zeros(n), floors.displacement))
-    for place in [*places, *range(stories, stories + len(properties.stories))]:
+    for place in places:
         row = np.zeros(layout.columns)
         if place >= stories:
             floor = properties.stories[place - stories].floor

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex.foundation.arrays import Array, Bools
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, internal_count
+from rockflex.models._elements import CLOSED, RIGHT, internal_count
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import (
@@ -45,32 +45,6 @@ class JointedModel(RockingModel):
         return np.array([p.effective_height, *(each.effective_height for each in p.joints)])
 
     @cached_property
-    def levers(self) -> Array:
-        """Σ m (z - Z_j) of what is above each joint in kg m, shape (b,)."""
-        return np.array([self.properties.l0r, *(each.moment for each in self.properties.joints)])
-
-    @cached_property
-    def weights(self) -> Array:
-        """The mass that stands on each joint in kg, shape (b,)."""
-        return np.array([self.properties.m_tot, *(each.mass for each in self.properties.joints)])
-
-    @cached_property
-    def widths(self) -> Array:
-        """The half width of each joint in m, shape (b,); of an eccentric base it lies between those of its sides."""
-        return np.array([self.properties.half_width, *(each.half_width for each in self.properties.joints)])
-
-    @cached_property
-    def toppling(self) -> Array:
-        """Σ m ℓ_k Θ_k² / 2 as a matrix: what the weight takes from the stiffness for each m/s² of gravity, (b, b).
-
-        ℓ_k is the length of segment k below a mass, and Θ_k the sum of the rotations up to it.
-        """
-        found = np.zeros((self.layout.freedoms, self.layout.freedoms))
-        for k, length in enumerate(self.levers - np.append(self.levers[1:], 0.0)):
-            found[: k + 1, : k + 1] += length
-        return found
-
-    @cached_property
     def horizontal_inertia(self) -> Array:
         """Σ m (z - Z_j) (z - Z_k) in kg m², shape (b, b)."""
         b, p = self.layout.freedoms, self.properties
@@ -97,10 +71,6 @@ class JointedModel(RockingModel):
     def stance(self, key: Key) -> Key:
         """Return the side of every joint, that of the base first."""
         return (key[0], *key[1 + len(self.elements) :])
-
-    def stance_on(self, side: int) -> Key:
-        """Return the stance in which all joints are open to a side."""
-        return (side,) * self.layout.freedoms
 
     def with_side(self, key: Key, joint: int, side: int) -> Key:
         """Return the key with another side of a joint."""
@@ -135,28 +105,6 @@ class JointedModel(RockingModel):
         """Return whether the base rotates in a phase."""
         return key[0] != CLOSED
 
-    def arm(self, joint: int, side: int) -> float:
-        """Return the distance of the edge of a joint from the axis of the masses in m."""
-        return self.properties.pivot(side).arm if joint == 0 else float(self.widths[joint])
-
-    def stretch(self, place: int, stance: int | Key) -> Array:
-        """Return the elongation of an element in m with the joints on some sides: a row, shape (C,).
-
-        A tendon passes through all joints, any other element under the base through that of the base.
-        """
-        if place in self.attached:
-            return self.attached[place].copy()
-        row = np.zeros(self.layout.columns)
-        sides = (stance,) if isinstance(stance, int) else stance
-        for joint, side in enumerate(sides):
-            if side != CLOSED and (joint == 0 or self.properties.elements[place].prestressed):
-                row[self.layout.rotations[joint]] = side * self.elongation_arm(place, joint, side)
-        return row
-
-    def elongation_arm(self, place: int, joint: int, side: int) -> float:
-        """Return the distance of an element under the base from the edge of a joint in m."""
-        return self.arm(joint, side) - side * self.properties.elements[place].position
-
     def elongations_at(self, states: Array) -> Array:
         """Return δ of every element at the states of a history in m, shape (n, E)."""
         found = np.zeros((len(states), len(self.elements)))
@@ -179,21 +127,17 @@ class JointedModel(RockingModel):
 
     def _base_equations(self, key: Key) -> BaseEquations:
         equations = BaseEquations.blank(self.layout.freedoms, self.layout.n_internal)
-        sides = np.array(self.stance(key))
-        equations.inertia[:] = self.horizontal_inertia + self.rises(sides)
+        lifts = self.lifts_by(self.stance(key))
+        equations.inertia[:] = self.horizontal_inertia + np.outer(lifts, lifts) * self.shared_weights
         equations.stiffness[:] = -self.gravity * self.toppling
-        equations.constant[:] = -self.gravity * self.weights * self.lifts_by(sides)
+        equations.constant[:] = -self.gravity * self.weights * lifts
         equations.ground[:] = -self.levers
         return equations
 
-    def lifts_by(self, sides: NDArray[np.int64]) -> Array:
-        """Return s B of each joint in m: how far a unit of its rotation lifts what is above; shape (b,)."""
-        return np.array([side * self.arm(joint, side or RIGHT) for joint, side in enumerate(sides.tolist())])
-
-    def rises(self, sides: NDArray[np.int64]) -> Array:
-        """Return the vertical part of the inertia, s_j s_k B_j B_k Σ m above both joints, in kg m², shape (b, b)."""
-        lift, above = self.lifts_by(sides), np.minimum(self.weights[:, None], self.weights)
-        return np.outer(lift, lift) * above
+    @cached_property
+    def shared_weights(self) -> Array:
+        """The mass that stands on both of two joints in kg, shape (b, b)."""
+        return np.minimum(self.weights[:, None], self.weights)
 
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, key)
@@ -216,13 +160,6 @@ class JointedModel(RockingModel):
             if reach:
                 row -= reach * self.tension(place, key)
         return row
-
-    def lost_support(self, key: Key) -> Array:
-        """Return the decrease of ΣF_z below its value at rest in a phase, in N: a row, shape (C,)."""
-        row = super().lost_support(key)
-        sides = np.array(self.stance(key))
-        turns = self.accelerations(key)[self.properties.n_modes :]
-        return row - (self.lifts_by(sides) * self.weights)[1:] @ turns[1:]
 
     def impacts(self, states: Array) -> Bools:
         """Return True for the interval between the two states of every landing of a joint, shape (n - 1,)."""
@@ -252,29 +189,16 @@ class JointedModel(RockingModel):
     def raised_weight(self, states: Array) -> Array:
         """Return the gravity energy per unit of gravity in kg m, for small rotations, shape (n,)."""
         turned = self.joint_rotations(states)
-        lift = np.array([self.arm(0, RIGHT), *self.widths[1:]]) * np.abs(turned)
-        lift[:, 0] *= np.where(turned[:, 0] < 0.0, self.arm(0, LEFT) / self.arm(0, RIGHT), 1.0)
-        return lift @ self.weights - 0.5 * np.einsum("nj,jk,nk->n", turned, self.toppling, turned)
-
-    def joint_rotations(self, states: Array) -> Array:
-        """Return the rotation of every joint at the states of a history, that of the base first, in rad, (n, b)."""
-        return np.column_stack([self.layout.of(states, place) for place in self.layout.rotations])
+        lifts = self.lift_rates(np.sign(turned), turned)  # of the rotations themselves
+        return lifts @ self.weights - 0.5 * np.einsum("nj,jk,nk->n", turned, self.toppling, turned)
 
     def kinetic_energy(self, states: Array) -> Array:
         """Return ½ q'ᵀ M q' of the rotations and the modes in J, shape (n,)."""
-        p, v = self.properties, self.layout.velocities(states)
-        spins = np.column_stack([self.layout.of(states, place + 1) for place in self.layout.rotations])
-        lift = self.lift_rates(states, spins)
+        p, v, spins = self.properties, self.layout.velocities(states), self.joint_spins(states)
+        lifts = self.lift_rates(self.sides_at(states), spins)
         found = 0.5 * np.einsum("nj,jk,nk->n", spins, self.horizontal_inertia, spins)
-        found += 0.5 * np.einsum("nj,jk,nk->n", lift, np.minimum(self.weights[:, None], self.weights), lift)
+        found += 0.5 * np.einsum("nj,jk,nk->n", lifts, self.shared_weights, lifts)
         return found + 0.5 * v**2 @ p.effective_mass + ((spins @ self.couplings) * v) @ p.effective_mass
-
-    def lift_rates(self, states: Array, spins: Array) -> Array:
-        """Return s_j B_j θ'_j of every joint in m/s, shape (n, b)."""
-        sides = self.sides_at(states)
-        arms = np.broadcast_to(self.widths, sides.shape).copy()
-        arms[:, 0] = np.where(sides[:, 0] < 0, self.arm(0, LEFT), self.arm(0, RIGHT))
-        return sides * arms * spins
 
 
 def model_on_rigid_ground(

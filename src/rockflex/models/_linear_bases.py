@@ -61,7 +61,7 @@ class LinearJointed(LinearSystemBase):
         """A joint opens when the forces on it would turn it."""
         model = self.model
         row = -side * self.taken(model.opening(key, joint, side), key)
-        scale = model.gravity * float(model.weights[joint] * model.widths[joint])
+        scale = model.gravity * float(model.weights[joint] * model.arm(joint, side))
         return self.event("uplift", row, model.with_side(key, joint, side), scale)
 
     def overturning(self, joint: int, side: int) -> Event:

@@ -206,7 +206,7 @@ class LinearSystemBase:
         """The rate of the elongation of an element: a row."""
         return self._stretches(place, self.model.stance(key))[1]
 
-    def _stretches(self, place: int, stance: int | Key) -> Array:
+    def _stretches(self, place: int, stance: Key) -> Array:
         """The elongation of an element, its rate, and the whole stretch: read-only rows."""
         known = self._known_stretches.get((place, stance))
         if known is None:
@@ -218,7 +218,7 @@ class LinearSystemBase:
         return known
 
     @cached_property
-    def _known_stretches(self) -> dict[tuple[int, int | Key], Array]:
+    def _known_stretches(self) -> dict[tuple[int, Key], Array]:
         return {}
 
     def events(self, key: Key) -> list[Event]:

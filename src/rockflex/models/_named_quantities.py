@@ -60,12 +60,8 @@ def _total_top_displacement(model: RockingModel) -> Share:
     p = model.properties
     if not p.top_height:
         return LINEAR, {}
-    return SWAY, {
-        "displacement": p.top_ordinate,
-        "rotation": p.top_height,
-        "slip": 1.0,
-        "joint": levers_of_joints(p, p.top_height),
-    }
+    found = {"displacement": p.top_ordinate, "rotation": p.top_height, "slip": 1.0}
+    return SWAY, found | {"joint": levers_of_joints(p, p.top_height)} if p.joints else found
 
 
 def levers_of_joints(properties: RockingProperties, heights: ArrayLike) -> Array:
@@ -77,13 +73,8 @@ def levers_of_joints(properties: RockingProperties, heights: ArrayLike) -> Array
 def _horizontal_reaction(model: RockingModel) -> Share:
     """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D'', and what ties from a height pull."""
     p = model.properties
-    return HORIZONTAL, {
-        "acceleration": p.effective_mass,
-        "turn": p.l0r,
-        "ground": p.horizontal_mass,
-        "ties": 1.0,
-        "joint_turn": [each.moment for each in p.joints],
-    }
+    found = {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass, "ties": 1.0}
+    return HORIZONTAL, found | {"joint_turn": [each.moment for each in p.joints]} if p.joints else found
 
 
 def _slip(_model: RockingModel) -> Share:
@@ -138,8 +129,14 @@ def modal_displacement(model: RockingModel, mode: int) -> Quantities:
 
 def joint_rotations(model: RockingModel) -> Quantities:
     """Return the rotation of each joint above the base in rad."""
-    count = len(model.properties.joints)
+    count = len(model.joints)
     return Quantities.of(count, model.properties.n_modes, joint=np.eye(count))
+
+
+def joint_forces(model: RockingModel) -> Quantities:
+    """Return the axial force of each joint above the base in N, positive where it is pressed."""
+    count = len(model.joints)
+    return Quantities.of(count, model.properties.n_modes, joint_force=np.eye(count))
 
 
 def rotation_by_side(model: RockingModel) -> Quantities:

@@ -191,7 +191,7 @@ class NonlinearSpringPhases(NonlinearRockingPhases):
         for place, (each, taken) in enumerate(zip(model.elements, model.element_key(own)[1:], strict=True)):
             offset = each.reversal_offset(taken)
             if offset is not None:
-                yielding.append((layout.memory + known[place], offset, model.stretch(place, CLOSED)))
+                yielding.append((layout.memory + known[place], offset, model.stretch(place, model.stance_on(CLOSED))))
 
         def jump(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
             del acceleration, vertical

@@ -3,7 +3,6 @@
 import math
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from threading import Lock
 from typing import Any, cast
@@ -16,6 +15,8 @@ from rockflex.engine.solution import Ends, Excitation, Solution, Solutions, Stat
 from rockflex.engine.solvers import SolverPool
 from rockflex.engine.stops import check_interruption
 from rockflex.engine.system import MAX_STATES, StepTooLongError, System
+from rockflex.engine.tangent_pass import Crossing
+from rockflex.engine.tangent_steps import Motion
 from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
@@ -93,6 +94,8 @@ class PreparedModel:
                 field="model",
             )
         self.place, self._accepted = 0, set[tuple[object, ...]]()
+        # Phases and events with their derivatives by the scale of a record, of each time step
+        self.tangents = dict[tuple[bool, float], tuple[dict[Any, Motion], dict[Any, Crossing]]]()
         self.n_peaks = 1 + len(quantities)
 
     @cached_property
@@ -141,14 +144,7 @@ class PreparedModel:
     @cached_property
     def cost_model(self) -> CostModel:
         """The properties that determine the work of runs."""
-        p, found = self.model.properties, cost_model_of(self.model, self.n_peaks + 1)
-        if self.model.integrated:
-            return found
-        levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
-        free = min([p.pivot(side).i_theta for side in self.model.sides[1:]], default=np.inf) - levers.sum()
-        # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
-        fades = float(drag @ (1.0 + levers / free))
-        return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
+        return cost_model_of(self.model, self.n_peaks + 1)
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
@@ -158,12 +154,11 @@ class PreparedModel:
         self, run: Excitation, dt: float, free_vibration: float | None, *, history: bool, limit: float | None
     ) -> None:
         """Raise `WorkLimitError` as `Task.check` does; of runs that are equally much work only the first is asked."""
-        # With a hysteresis that flows, the work depends on every sample.
-        size = None if self.cost_model.flow else (run.acceleration.size, dt, free_vibration, history, limit)
+        size = run.acceleration.size, dt, free_vibration, history, limit
         if size in self._accepted:
             return
         self.task(run, dt, free_vibration, history=history).check(limit)
-        if size is not None:
+        if not self.cost_model.flow:  # with a hysteresis that flows, the work depends on every sample
             if len(self._accepted) >= SIZES:
                 self._accepted.clear()
             self._accepted.add(size)
@@ -180,6 +175,7 @@ class PreparedModel:
     def release(self) -> None:
         """Forget all tables; the next run makes them anew."""
         self.place = 0
+        self.tangents.clear()
         for name in ("pool", "shaken"):
             vars(self).pop(name, None)
 
@@ -302,7 +298,7 @@ def run_all(
     ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
     of each run in s, see `CostModel`; None means no limit. Some ten times a second the runs can be interrupted by
     Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state, and be `seen`: the
-    solver is shown after a run that could be solved.
+    solver, which has kept the states beside events, is shown after a run that could be solved.
 
     The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
     work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
@@ -346,6 +342,7 @@ def run_all(
     check_interruption()
     solver = pool.acquire(dt)
     solver.watch, solver.limit = check_interruption, first.samples_allowed(work_limit)
+    solver.marks = seen is not None
     while batch.place < len(allowed):
         try:
             solver.follow(batch, history)

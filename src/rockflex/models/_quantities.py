@@ -34,7 +34,7 @@ OF_MODES = ("displacement", "restoring", "acceleration", "velocity")
 OF_BASE = ("ties", "rotation", "right", "turn", "ground")
 OF_SWING = ("swing", "right_swing")
 OF_SHIFT = ("slip", "slipping", "heave", "heaving")
-OF_JOINTS = ("joint", "right_joint", "joint_turn", "joint_spin", "right_joint_spin")
+OF_JOINTS = ("joint", "right_joint", "joint_turn", "joint_spin", "right_joint_spin", "joint_force")
 TIES, ROTATION, RIGHT_ROTATION, TURN, GROUND = -5, -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
@@ -54,10 +54,10 @@ class Quantities:
     shifts : ndarray, shape (F, 4)
         Weights of the `slip` and the `heave` of the base and of their rates (`slipping`, `heaving`), in models that
         have them.
-    joints : ndarray, shape (F, 5, J)
+    joints : ndarray, shape (F, 6, J)
         Weights of the rotation of each joint above the base (`joint`), of that while it is open to the right
-        (`right_joint`), of its acceleration (`joint_turn`), and of its rate, likewise (`joint_spin`,
-        `right_joint_spin`).
+        (`right_joint`), of its acceleration (`joint_turn`), of its rate, likewise (`joint_spin`, `right_joint_spin`),
+        and of its axial force (`joint_force`).
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models._quantities`.
     """
@@ -108,7 +108,9 @@ class Quantities:
 
 def _joint_shares(count: int, *shares: Mapping[str, ArrayLike]) -> Array:
     """Return blank weights for the joints of some shares, as many as the most that one names."""
-    most = max([np.shape(given[name])[-1] for given in shares for name in OF_JOINTS if name in given], default=0)
+    most = max(
+        [np.shape(share)[-1] for given in shares for name, share in given.items() if name in OF_JOINTS], default=0
+    )
     return np.zeros((count, len(OF_JOINTS), most))
 
 
@@ -124,14 +126,14 @@ def collected_quantities(modes: int, shares: Sequence[Share]) -> Quantities:
     count, columns = len(shares), _columns(modes)
     values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
     joints = _joint_shares(count, *(given for _, given in shares))
-    for row, shift, joint, (_, given) in zip(values, shifts, joints, shares, strict=True):
+    for k, (_, given) in enumerate(shares):
         for name, share in given.items():
-            if name in OF_JOINTS:
-                joint[OF_JOINTS.index(name), : np.shape(share)[-1]] = share
+            if name in columns:
+                values[k, columns[name]] = share
             elif name in OF_SHIFT:
-                shift[OF_SHIFT.index(name)] = share
+                shifts[k, OF_SHIFT.index(name)] = share
             else:
-                row[columns[name]] = share
+                joints[k, OF_JOINTS.index(name), : np.shape(share)[-1]] = share
     kinds = np.array([kind for kind, _ in shares], dtype=np.int64)
     return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, joints, kinds)
 
@@ -188,13 +190,15 @@ def rows_of_quantities(model: RockingModel, quantities: Quantities, key: Key) ->
 def _add_joints(model: RockingModel, quantities: Quantities, key: Key, rows: Array) -> None:
     """Add what the joints above the base contribute to the rows of quantities; nothing where the base is fixed."""
     places, stance = model.layout.rotations[1:], model.stance(key)
-    if not places or isinstance(stance, int):
+    if not places:
         return
-    turn, right_turn, turning, spin, right_spin = quantities.joints.swapaxes(0, 1)
+    turn, right_turn, turning, spin, right_spin, force = quantities.joints.swapaxes(0, 1)
     right = np.array(stance[1:]) == RIGHT
     rows[:, places] += turn + right_turn * right
     rows[:, [place + 1 for place in places]] += spin + right_spin * right
     rows += turning @ model.accelerations(key)[-len(places) :]
+    if force.any():
+        rows += force @ model.axial_forces(key)
 
 
 def _moving(model: RockingModel, key: Key, *, large: bool) -> Array:

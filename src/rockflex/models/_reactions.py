@@ -12,7 +12,6 @@ from rockflex.foundation.constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._elements import CLOSED
 from rockflex.models._field_numbers import field_numbers
-from rockflex.models._jointed_model import JointedModel
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._spring_model import LOADED, YIELDING, SpringModel
@@ -36,12 +35,10 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """
     if model.complete:
         return _reactions_at_large_rotations(model, states, rates)
-    p, side, layout = model.properties, acting_side(states), model.layout
+    p, layout = model.properties, model.layout
     n = p.n_modes
-    turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
-    horizontal = p.horizontal_mass * states[:, GROUND] + p.l0r * turn + push
-    if isinstance(model, JointedModel):
-        horizontal += rates[:, n + 1 :] @ model.levers[1:]
+    turns, push = rates[:, layout.turns], rates[:, :n] @ p.effective_mass
+    horizontal = p.horizontal_mass * states[:, GROUND] + turns @ model.levers + push
     if layout.slip >= 0:
         horizontal += p.horizontal_mass * rates[:, n + 1]
     pulls = element_forces(model, states)
@@ -52,12 +49,8 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
         return Reactions(horizontal, spring_forces(model, states).sum(axis=1))
     under = [place for place, each in enumerate(model.elements) if each.position is not None]
     vertical = p.m_tot * (model.gravity + states[:, RISE]) + pulls[:, under].sum(axis=1)
-    for each in (1, -1):
-        on = side == each
-        vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]
-    if isinstance(model, JointedModel):
-        vertical += (model.lift_rates(states, rates[:, n:]) * model.weights)[:, 1:].sum(axis=1)
-    return Reactions(horizontal, vertical)
+    sides = np.column_stack((acting_side(states), model.sides_at(states)[:, 1:]))
+    return Reactions(horizontal, vertical + model.lift_rates(sides, turns) @ model.weights)
 
 
 def spring_forces(model: RockingModel, states: Array) -> Array:

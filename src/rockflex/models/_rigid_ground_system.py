@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -30,8 +31,8 @@ CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
 def may_stack(model: RockingModel) -> bool:
     """Return whether a model can be in a stack: at its impacts, if any, the state is multiplied by a matrix."""
     p = model.properties
-    numbers = [*p.omega.tolist(), p.i_theta, p.l0r, p.m_tot, p.half_width]
-    usual = all(SMALL < abs(each) < LARGE for each in numbers)  # what overflows is told of one model
+    numbers = [*map(abs, p.omega.tolist()), p.i_theta, abs(p.l0r), p.m_tot, p.half_width]
+    usual = min(numbers) > SMALL and max(numbers) < LARGE  # what overflows is told of one model
     rules = [(side, rule_of_law(model.law, side)) for side in (RIGHT, LEFT) if model.lifts]
     return usual and all(rule is not None and rule.fixed_share(p, side) == 0.0 for side, rule in rules)
 
@@ -44,21 +45,23 @@ def system_on_rigid_ground(models: Sequence[RockingModel], quantities: Sequence[
     Silva & Stojadinović 2024, Eqs. 15 and 23 to 25.
     """
     first, N = models[0], models[0].properties.n_modes
-    if not all((each.properties.omega**2 > 0.0).all() for each in models):
+    every = [each.properties for each in models]
+    omega = np.array([p.omega for p in every])
+    if not (omega**2 > 0.0).all():
         raise FloatingPointError("underflow encountered in square")
     names = ("rotation", *(f"quantity {k}" for k in range(len(quantities[0]))), "loss of support")
     layout = StateLayout(displacement=N, velocity=N, rotation=1, spin=1)
     stack = RigidGround(
         model=first,
-        omega=np.array([each.properties.omega for each in models]),
-        zeta=np.array([each.properties.zeta for each in models]),
-        mass=np.array([each.properties.effective_mass for each in models]),
-        height=np.array([each.properties.effective_height for each in models]),
-        l0r=np.array([each.properties.l0r for each in models]),
-        m_tot=np.array([each.properties.m_tot for each in models]),
+        omega=omega,
+        zeta=np.array([p.zeta for p in every]),
+        mass=np.array([p.effective_mass for p in every]),
+        height=np.array([p.effective_height for p in every]),
+        l0r=np.array([p.l0r for p in every]),
+        m_tot=np.array([p.m_tot for p in every]),
         gravity=np.array([each.gravity for each in models]),
         pivots={
-            side: np.array([(pivot.i_theta, pivot.arm) for pivot in (each.properties.pivot(side) for each in models)]).T
+            side: np.array([(pivot.i_theta, pivot.arm) for pivot in [p.pivot(side) for p in every]]).T
             for side in (RIGHT, LEFT)
         },
         shares=np.array([each.shares for each in quantities]),
@@ -97,7 +100,7 @@ class RigidGround:
         rates[:, modes, N + modes] = 1.0
         rates[:, N : 2 * N], rates[:, -1] = accelerations, turn
         rates[:, -2, 2 * N + 1] = side != CLOSED
-        rows = np.concatenate((self.rotation(), self.rows(side, accelerations, turn), self.support(side, turn)), 1)
+        rows = np.concatenate((self.rotation, self.rows(side, accelerations, turn), self.support(side, turn)), 1)
         events = (self.landing(side), self.overturning(side)) if side != CLOSED else self.uplifts()
         A, C = rates[..., :-2], rows[..., :-2]
         return LinearPhase(
@@ -116,12 +119,14 @@ class RigidGround:
         rows = np.concatenate((np.zeros_like(lost), quantities, lost), axis=1)
         return {"A_v": rates[..., :-2], "f_v": rates[..., -1], "C_v": rows[..., :-2], "d_v": rows[..., -1]}
 
+    @cached_property
     def rotation(self) -> Array:
         """θ: a row, shape (S, 1, C)."""
         found = np.zeros((len(self.l0r), 1, 2 * self.omega.shape[1] + 4))
         found[..., -4] = 1.0
         return found
 
+    @cached_property
     def moment(self) -> Array:
         """The overturning moment in contact, left-hand side of Eq. 24, in N m: a row, shape (S, C)."""
         (S, N), arm = self.omega.shape, self.mass * self.height
@@ -133,16 +138,16 @@ class RigidGround:
     def turn(self, side: int) -> Array:
         """θ'', Eq. 23 with D'' eliminated, in rad/s²: a row, shape (S, C)."""
         if side == CLOSED:
-            return np.zeros_like(self.moment())
+            return np.zeros_like(self.moment)
         arm = self.pivots[side][1]
-        found = -self.moment()
+        found = -self.moment
         found[:, -4] += self.l0r * self.gravity
         found[:, -1] -= side * self.m_tot * self.gravity * arm
         return found / self.free_inertia(side)[:, None]
 
     def turn_by_weight(self, side: int) -> Array:
         """The share of θ'' of the weight under a gravity of 1 m/s²: a row, shape (S, C)."""
-        found = np.zeros_like(self.moment())
+        found = np.zeros_like(self.moment)
         if side != CLOSED:
             found[:, -4], found[:, -1] = self.l0r, -side * self.m_tot * self.pivots[side][1]
             found /= self.free_inertia(side)[:, None]
@@ -179,7 +184,7 @@ class RigidGround:
         """The base lifts about a pivot when the overturning moment exceeds that of the weight (Eq. 24)."""
         if not self.model.lifts:
             return ()
-        found, moment = list[Event](), self.moment()
+        found, moment = list[Event](), self.moment
         for side in self.model.sides[1:]:
             weight = self.m_tot * self.gravity * self.pivots[side][1]
             row = side * moment
@@ -190,11 +195,11 @@ class RigidGround:
 
     def overturning(self, side: int) -> Event:
         """The end of the run at a rotation of π/2."""
-        return Event("overturning", -side * self.rotation()[:, 0, :-2], None, QUARTER_TURN, scale=QUARTER_TURN)
+        return Event("overturning", -side * self.rotation[:, 0, :-2], None, QUARTER_TURN, scale=QUARTER_TURN)
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, model = side * self.rotation()[:, 0, :-2], self.model
+        row, model = side * self.rotation[:, 0, :-2], self.model
         rule, (share, excursion) = rule_of_law(model.law, side), fixed_share(model, side)
         if share == 0.0:
             return Event("impact", row, CONTACT, jump=self.struck(0.0))

@@ -44,6 +44,7 @@ from rockflex.models._state_layout import (
 )
 from rockflex.structure._branches import Element
 from rockflex.structure._ground import Springs
+from rockflex.structure._joint import JointAbove
 from rockflex.structure._rocking import RockingProperties
 
 MAX_PHASES = 1000  # whose equations of motion are kept
@@ -162,13 +163,64 @@ class RockingModel(Value):
         """The places of elements whose elongation does not follow from the rotation of the base alone."""
         return self.attached_places
 
-    def stance(self, key: Key) -> int | Key:
-        """Return what elongations depend on in a phase besides the state: the side of the base, or of every joint."""
-        return key[0]
+    def stance(self, key: Key) -> Key:
+        """Return the side of every joint in a phase, that of the base first."""
+        return key[:1]
 
-    def stance_on(self, side: int) -> int | Key:
+    def stance_on(self, side: int) -> Key:
         """Return the stance in which all joints are open to a side."""
-        return side
+        return (side,) * len(self.layout.rotations)
+
+    def sides_at(self, states: Array) -> NDArray[np.int64]:
+        """Return the side of every joint at the states of a history, that of the base first, shape (n, j)."""
+        return states[:, [SIDE]].astype(np.int64)
+
+    @cached_property
+    def joints(self) -> tuple[JointAbove, ...]:
+        """The joints above the base that may open."""
+        return self.properties.joints[: self.layout.n_joints]
+
+    @cached_property
+    def levers(self) -> Array:
+        """Σ m (z - Z_j) of what is above each joint in kg m, that of the base first, shape (j,)."""
+        return np.array([self.properties.l0r, *(each.moment for each in self.joints)])
+
+    @cached_property
+    def weights(self) -> Array:
+        """The mass that stands on each joint in kg, that of the base first, shape (j,)."""
+        return np.array([self.properties.m_tot, *(each.mass for each in self.joints)])
+
+    def arm(self, joint: int, side: int) -> float:
+        """Return the distance of the edge of a joint from the axis of the masses in m; joint 0 is the base."""
+        return self.properties.pivot(side).arm if joint == 0 else self.joints[joint - 1].half_width
+
+    @cached_property
+    def toppling(self) -> Array:
+        """Σ m ℓ_k Θ_k² / 2 as a matrix: what the weight takes from the stiffness for each m/s² of gravity, (j, j).
+
+        ℓ_k is the length of segment k below a mass, and Θ_k the sum of the rotations up to it.
+        """
+        found = np.zeros((self.levers.size, self.levers.size))
+        for k, length in enumerate(self.levers - np.append(self.levers[1:], 0.0)):
+            found[: k + 1, : k + 1] += length
+        return found
+
+    def lifts_by(self, stance: Key) -> Array:
+        """Return s B of each joint in m: how far a unit of its rotation lifts what is above; shape (j,)."""
+        return np.array([side * self.arm(joint, side or RIGHT) for joint, side in enumerate(stance)])
+
+    def lift_rates(self, sides: NDArray[Any], spins: Array) -> Array:
+        """Return s_j B_j θ'_j of every joint in m/s at sides and rates of a history, or of θ''_j, shape (n, j)."""
+        left, right = (np.array([self.arm(joint, each) for joint in range(spins.shape[1])]) for each in (LEFT, RIGHT))
+        return sides * np.where(sides < 0, left, right) * spins
+
+    def joint_rotations(self, states: Array) -> Array:
+        """Return the rotation of every joint at the states of a history, that of the base first, in rad, (n, j)."""
+        return states[:, [HEADER + place for place in self.layout.rotations]]
+
+    def joint_spins(self, states: Array) -> Array:
+        """Return the rates of `joint_rotations` in rad/s, shape (n, j)."""
+        return states[:, [HEADER + place + 1 for place in self.layout.rotations]]
 
     @cached_property
     def couplings(self) -> Array:
@@ -334,14 +386,17 @@ class RockingModel(Value):
             found[:, place] = moving @ row[:-2] + row[-1]
         return found
 
-    def stretch(self, place: int, stance: int | Key) -> Array:
-        """Return the elongation of an element in m in a `stance`, for small rotations: a row, shape (C,)."""
+    def stretch(self, place: int, stance: Key) -> Array:
+        """Return the elongation of an element in m in a `stance`, for small rotations: a row, shape (C,).
+
+        A tendon passes through all joints, any other element under the base through that of the base.
+        """
         if place in self.attached:
             return self.attached[place].copy()
-        assert isinstance(stance, int)
-        row = np.zeros(self.layout.columns)
-        if stance != CLOSED:
-            row[self.layout.rotation] = stance * arm_of_element(self.properties, self.elements[place], stance)
+        row, each = np.zeros(self.layout.columns), self.properties.elements[place]
+        for joint, side in enumerate(stance):
+            if side != CLOSED and (joint == 0 or each.prestressed):
+                row[self.layout.rotations[joint]] = side * each.arm(self.arm(joint, side), side)
         return row
 
     def tension(self, place: int, key: Key) -> Array:
@@ -353,10 +408,10 @@ class RockingModel(Value):
         return known
 
     @cached_property
-    def _tensions(self) -> dict[tuple[int, int | Key, int], Array]:
+    def _tensions(self) -> dict[tuple[int, Key, int], Array]:
         return {}
 
-    def _tension(self, place: int, stance: int | Key, branch: int) -> Array:
+    def _tension(self, place: int, stance: Key, branch: int) -> Array:
         each, stretch, known = self.elements[place], self.stretch(place, stance), internal_places(self.elements)
         pull = each.tension(branch)
         row = pull.stiffness * stretch + pull.damping * rate_of_elongation_row(stretch, self.layout)
@@ -455,6 +510,23 @@ class RockingModel(Value):
         """Return the inertia of the rotation on each side in kg m², shape (n,): I_θ about the pivot."""
         p = self.properties
         return np.where(side < 0.0, p.pivot(-1).i_theta, p.pivot(1).i_theta)
+
+    def kinetic_energy(self, states: Array) -> Array:
+        """Return the energy of the motion relative to the ground in J, for small rotations, shape (n,).
+
+        ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'²; with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'), on springs
+        plus ½ m_tot z'².
+        """
+        p, layout, v = self.properties, self.layout, self.layout.velocities(states)
+        spin = layout.of(states, layout.spin)
+        found = 0.5 * self.rotary_inertia(states[:, SIDE]) * spin**2
+        found += spin * (v @ (p.effective_mass * p.effective_height)) + 0.5 * v**2 @ p.effective_mass
+        if layout.heave >= 0:
+            found += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
+        if layout.slip >= 0:
+            slide = layout.of(states, layout.slip + 1)
+            found += slide * (0.5 * p.horizontal_mass * slide + p.l0r * spin + v @ p.effective_mass)
+        return found
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -625,12 +697,26 @@ class RockingModel(Value):
         row, side, p = np.zeros(self.layout.columns), key[0], self.properties
         if self.bends(side):
             return row
-        if self.is_free(key):
-            row -= side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
+        row -= (self.lifts_by(self.stance(key)) * self.weights) @ self.accelerations(key)[self.layout.turns]
         row -= self.vertical_tension(key)
         row[-1] += self.properties.prestress
         row[-1] -= p.m_tot * (self.gravity - GRAVITY)
         return row
+
+    def axial_forces(self, key: Key) -> Array:
+        """Return N of each joint above the base in a phase in N, for small rotations: rows, shape (J, C).
+
+        Σ m (g + v'') of the masses above it, which the open joints below them lift, and the tensions of the tendons,
+        which run through it.
+        """
+        places = [
+            place for place, each in enumerate(self.properties.elements) if each.prestressed and not each.attached
+        ]
+        above = np.minimum(self.weights[1:, None], self.weights)
+        rows = (above * self.lifts_by(self.stance(key))) @ self.accelerations(key)[self.layout.turns]
+        rows += sum((self.tension(place, key) for place in places), np.zeros(self.layout.columns))
+        rows[:, -1] += self.weights[1:] * self.gravity
+        return rows
 
     def tensions(self, key: Key) -> Array:
         """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""

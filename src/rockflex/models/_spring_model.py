@@ -181,7 +181,7 @@ class SpringModel(RockingModel):
         """Return how far the base has risen at every element since it was at rest, in m, shape (n, E)."""
         moving = states[:, HEADER : HEADER + self.layout.moving].copy()
         moving[:, self.layout.rotation] = self.turned(moving[:, self.layout.rotation])
-        rows = np.array([self.stretch(place, CLOSED) for place in range(len(self.elements))])
+        rows = np.array([self.stretch(place, self.stance_on(CLOSED)) for place in range(len(self.elements))])
         return moving @ rows[:, :-2].T + rows[:, -1] if len(rows) else np.zeros((len(states), 0))
 
     def raised_weight(self, states: Array) -> Array:
@@ -257,7 +257,7 @@ class SpringModel(RockingModel):
         """The places of all elements."""
         return tuple(range(len(self.elements)))
 
-    def stretch(self, place: int, stance: int | Key) -> Array:
+    def stretch(self, place: int, stance: Key) -> Array:
         """Return the elongation of an element in m as a row over `stretched` states, shape (C,): zero at rest."""
         position, layout = self.elements[place].position, self.layout
         row = super().stretch(place, stance)
@@ -353,7 +353,8 @@ class SpringModel(RockingModel):
         moving = np.append(start[: layout.moving], (0.0, 1.0))
         moving[layout.rotation] = turned
         for place, each in enumerate(self.elements):
-            branch, remembered = each.state_after_slow_stretch(float(self.stretch(place, CLOSED) @ moving))
+            stretch = self.stretch(place, self.stance_on(CLOSED))
+            branch, remembered = each.state_after_slow_stretch(float(stretch @ moving))
             of_elements.append(branch)
             kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
@@ -387,7 +388,7 @@ class SpringModel(RockingModel):
         acts = [{LOADED: 1.0, RECEDING: -1.0}.get(branch, 0.0) for branch in key[1 : n + 1]]
         known, recalled, rows = internal_places(self.elements), list[int](), np.zeros((len(self.elements), 6))
         for place, (each, taken) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
-            pull, stretch = each.tension(taken), self.stretch(place, CLOSED)
+            pull, stretch = each.tension(taken), self.stretch(place, self.stance_on(CLOSED))
             rows[place] = each.position, pull.stiffness, pull.damping, pull.force, pull.internal_factor, stretch[-1]
             recalled.append(self.layout.memory + known[place] if place in known else -1)
         return GroundPhase(

@@ -97,6 +97,11 @@ class StateLayout(NamedTuple):
         """The places of all rotations: that of the base, and of the joints above it."""
         return [self.rotation, *(self.joints + 2 * k for k in range(self.n_joints))]
 
+    @property
+    def turns(self) -> list[int]:
+        """The places of θ'' of all rotations among the accelerations of modes and base."""
+        return [self.modes + (place - self.rotation) // 2 for place in self.rotations]
+
     def displacements(self, states: Array) -> Array:
         """Return D at the states of a history, shape (n, N)."""
         return states[:, HEADER : HEADER + self.modes]

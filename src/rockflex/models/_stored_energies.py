@@ -3,7 +3,6 @@
 import numpy as np
 
 from rockflex.foundation.arrays import Array
-from rockflex.models._jointed_model import JointedModel
 from rockflex.models._named_quantities import levers_of_joints
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._spring_model import SpringModel
@@ -15,20 +14,19 @@ from rockflex.structure._analysis import FloorModes
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
     """Return kinetic, strain and gravity energy at the states of a history in J, each of shape (n,).
 
-    Simplified models on rigid ground:
-    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving
-    ground, with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of
-    the masses, and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8, with the momentum
-    of the motion relative to the base times the velocities of the base.
+    Of simplified models those relative to the moving ground: `RockingModel.kinetic_energy`, ½ Σ m* ω² D², and on rigid
+    ground s m_tot g B θ - ½ L_0^r g θ²; on springs m_tot g z takes the place of s m_tot g B θ. For complete models
+    those of Eqs. 6-8, with the momentum of the motion relative to the base times the velocities of the base.
     """
     p, layout = model.properties, model.layout
-    side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
-    rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
-    kinetic = 0.5 * model.rotary_inertia(side) * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
-    kinetic += 0.5 * v**2 @ p.effective_mass
+    d = layout.displacements(states)
     share = model.bouc_wen.post_yield_ratio if model.bouc_wen else 1.0
     strain = 0.5 * share * d**2 @ (p.effective_mass * p.omega**2)
     if model.complete:
+        side, v = states[:, SIDE], layout.velocities(states)
+        rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
+        kinetic = 0.5 * model.rotary_inertia(side) * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
+        kinetic += 0.5 * v**2 @ p.effective_mass
         offset = side * _arm(model, side)
         displaced = d @ p.effective_mass
         kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
@@ -44,14 +42,7 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
             kinetic += climb * (0.5 * p.m_tot * climb + across * np.cos(rotation) - along * np.sin(rotation))
             raised = raised + p.m_tot * layout.of(states, layout.heave)
         return kinetic, strain, model.gravity * raised
-    if isinstance(model, JointedModel):
-        return model.kinetic_energy(states), strain, model.gravity * model.raised_weight(states)
-    if layout.heave >= 0:
-        kinetic += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
-    if layout.slip >= 0:
-        slide = layout.of(states, layout.slip + 1)
-        kinetic += slide * (0.5 * p.horizontal_mass * slide + p.l0r * spin + v @ p.effective_mass)
-    return kinetic, strain, model.gravity * model.raised_weight(states)
+    return model.kinetic_energy(states), strain, model.gravity * model.raised_weight(states)
 
 
 def soil_strain(model: RockingModel, states: Array) -> Array:

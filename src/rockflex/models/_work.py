@@ -7,7 +7,7 @@ work.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +25,7 @@ RELAXING = 6.0  # e-folds of the relaxing hysteresis per attempted step
 MICRO = 1e-6
 HISTORY = 4e9  # bytes
 SWIFT = 10.0  # rad per time step, beyond which overdamped fast motions are excluded
+OVERDAMPED = 20.0  # times the fastest vibration: a motion that fades faster is one of its own
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
@@ -70,8 +71,9 @@ class CostModel:
         Whether rocking is integrated step by step.
     flow
         Relaxation rate in 1/s of the flowing hysteresis per m/s of spring velocity.
-    dense
-        Whether the rocking phase cannot be uncoupled, so that its bounds are computed point by point.
+    fading
+        Rate in 1/s of a strongly overdamped motion of a very narrow base while it rocks; zero if there is none. Such a
+        phase cannot be uncoupled, so that its bounds are computed point by point.
     """
 
     modes: int
@@ -79,7 +81,12 @@ class CostModel:
     fastest: float
     integrated: bool = False
     flow: float = 0.0
-    dense: bool = False
+    fading: float = 0.0
+
+    @property
+    def rate(self) -> float:
+        """The largest rate in 1/s, of a vibration or of what fades."""
+        return max(self.fastest, self.fading)
 
     def prices(self, *, history: bool) -> tuple[float, float, float]:
         """Return the work in s of a sample, a look with its power series, and an attempted step."""
@@ -101,7 +108,7 @@ class CostModel:
         rad/s of the fastest vibration that takes work, if that is not the fastest of all.
         """
         sample, look, step = self.prices(history=history)
-        turned = (self.fastest if fastest is None else fastest) * dt
+        turned = (self.rate if fastest is None else fastest) * dt
         if self.integrated:
             flowing = step * velocity * self.flow * dt / RELAXING if self.flow else 0.0
             return EstimatedWork(samples * (sample + step), samples * step * turned / TURN, samples * flowing)
@@ -119,9 +126,9 @@ class CostModel:
 
         The bounds of a dense phase take one product per point of the finest grid.
         """
-        pairs, turned = self.modes + 1, self.fastest * dt
+        pairs, turned = self.modes + 1, self.rate * dt
         tables = (0.06 if turned > FAST else 0.02) * pairs**3
-        if self.dense:
+        if self.fading:
             tables += 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2)
         return MICRO * tables
 
@@ -132,45 +139,43 @@ def cost_model_of(model: RockingModel, rows: int) -> CostModel:
     The highest frequency is a bound that needs no eigenvalues and is at most one per cent too high.
     """
     p = model.properties
-    squares = [omega * omega for omega in p.omega.tolist()]
-    heights = p.effective_height.tolist()
+    omegas, heights = p.omega.tolist(), p.effective_height.tolist()
+    squares = [omega * omega for omega in omegas]
     moments = [mass * height * height for mass, height in zip(p.effective_mass.tolist(), heights, strict=True)]
-    bounds = (
-        _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness + stiffness_of_fuses(p, pivot.side))
-        for pivot in (p.pivots if model.lifts else ())
-    )
-    return _cost_model(model, rows, math.sqrt(max(bounds, default=0.0)))
+    highest, inertia = max(omegas, default=0.0), sum(moments)
+    free = math.inf  # the inertia about a pivot that belongs to no mode
+    for pivot in p.pivots if model.lifts else ():
+        stiffness = pivot.rocking_stiffness + stiffness_of_fuses(p, pivot.side)
+        free = min(free, pivot.i_theta - inertia)
+        highest = max(highest, _highest_rate(squares, moments, pivot.i_theta - inertia, stiffness))
+    flow, fading = 0.0, 0.0
+    if model.bouc_wen is not None:
+        b = model.bouc_wen
+        # z' = (1 - (γ + β) |z|^n) D'/D_y relaxes at this rate about its limit (γ + β)^(-1/n).
+        flow = b.exponent * (b.gamma + b.beta) ** (1.0 / b.exponent) / b.yield_displacement
+    elif not model.integrated and free > 0.0:
+        # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
+        rates = zip(p.zeta.tolist(), omegas, moments, strict=True)
+        fading = sum([2.0 * zeta * omega * (1.0 + moment / free) for zeta, omega, moment in rates])
+    return CostModel(p.n_modes, rows, highest, model.integrated, flow, fading if fading > OVERDAMPED * highest else 0.0)
 
 
-def _highest_square(squares: list[float], moments: list[float], inertia: float, stiffness: float) -> float:
-    """Return a bound of the highest ω² of oscillators with ω_n² and a_n = m*_n h*_n² on a rocking base.
+def _highest_rate(squares: list[float], moments: list[float], free: float, stiffness: float) -> float:
+    """Return a bound of the highest ω of oscillators with ω_n² and a_n = m*_n h*_n² on a rocking base.
 
     The frequencies obey λ (I - Σ a_n) = k + Σ a_n ω_n² + Σ a_n ω_n⁴/(λ - ω_n²). Setting all ω_n in the last sum to
-    the highest is exact for one mode and gives a quadratic equation for λ - ω_N².
+    the highest is exact for one mode and gives a quadratic equation for λ - ω_N². `free` is I - Σ a_n.
     """
-    free = inertia - sum(moments)  # the inertia that belongs to no mode
-    highest = max(squares, default=0.0)
     if not free > 0.0:
         return math.inf
-    twice, more = 0.0, 0.0  # Σ a_n ω_n² and Σ a_n ω_n⁴
+    highest, twice, more = max(squares, default=0.0), 0.0, 0.0  # twice, more: Σ a_n ω_n² and Σ a_n ω_n⁴
     for square, moment in zip(squares, moments, strict=True):
         twice += moment * square
         more += moment * square * square
     half = 0.5 * ((stiffness + twice) / free - highest)
     beyond = half + math.sqrt(half * half + more / free)
     found = highest + max(beyond, 0.0)
-    return math.inf if math.isnan(found) else found
-
-
-def _cost_model(model: RockingModel, rows: int, fastest: float) -> CostModel:
-    highest = max(fastest, max(model.properties.omega.tolist(), default=0.0))
-    known = CostModel(model.properties.n_modes, rows, highest, model.integrated)
-    if model.bouc_wen is None:
-        return known
-    b = model.bouc_wen
-    # z' = (1 - (γ + β) |z|^n) D'/D_y relaxes at this rate about its limit (γ + β)^(-1/n).
-    flow = b.exponent * (b.gamma + b.beta) ** (1.0 / b.exponent) / b.yield_displacement
-    return replace(known, flow=flow)
+    return math.inf if math.isnan(found) else math.sqrt(found)
 
 
 class WorkLimitError(InputError):
@@ -222,10 +227,8 @@ class Task:
 
         On a very narrow base the fastest root belongs to a strongly overdamped motion, which needs no work.
         """
-        known = self.cost_model.fastest
-        if self.cost_model.integrated or known * self.dt < SWIFT:
-            return known
-        return min(known, cost_model_of(self.model, self.cost_model.rows).fastest)
+        known = self.cost_model
+        return known.rate if known.rate * self.dt < SWIFT else known.fastest
 
     def check(self, limit: float | None) -> None:
         """Raise `WorkLimitError` if the work exceeds `limit` s (None: no limit), or the history is too large."""

@@ -19,8 +19,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.values import Value
 from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._element_states import element_energies
-from rockflex.models._elements import CLOSED, rate_of_elongation_row
-from rockflex.models._jointed_model import JointedModel
+from rockflex.models._elements import rate_of_elongation_row
 from rockflex.models._motion_between_states import (
     IntervalsOfPhase,
     LinearMotion,
@@ -271,21 +270,15 @@ class PhaseWork:
         N = p.n_modes
         self._label, self._motion = model.label, motion
         self._drag = np.sqrt(2.0 * p.zeta * p.omega * p.effective_mass)[:, None] * unit[N : 2 * N]
-        self._push = p.l0r * unit[layout.spin] + p.effective_mass @ unit[N : 2 * N]
-        self._tilt, self._lift = p.l0r * unit[layout.rotation], np.zeros(len(unit))
+        spins = unit[[place + 1 for place in layout.rotations]]
+        self._push = model.levers @ spins + p.effective_mass @ unit[N : 2 * N]
+        self._tilt, self._turns = model.toppling @ unit[layout.rotations], spins
         rates = [unit[layout.spin]]
         if model.springs is not None:
             rates += [unit[layout.heave + 1] - x * unit[layout.spin] for x in model.springs.positions.tolist()]
             self._lift = p.m_tot * unit[layout.heave + 1]
-        elif key[0] != CLOSED:
-            self._lift = key[0] * p.m_tot * p.pivot(key[0]).arm * unit[layout.spin]
-        spins, tilt = unit[[place + 1 for place in layout.rotations]], self._tilt[None]
-        if isinstance(model, JointedModel):
-            self._push += model.levers[1:] @ spins[1:]
-            lifts = model.lifts_by(np.array(model.stance(key)))
-            self._lift += (lifts * model.weights)[1:] @ spins[1:]
-            tilt = model.toppling @ unit[layout.rotations]
-        self._tilt, self._turns = tilt, spins
+        else:
+            self._lift = (model.lifts_by(model.stance(key)) * model.weights) @ spins
         for place in swept_elements(model):
             rates.append(motion.taken(rate_of_elongation_row(model.stretch(place, model.stance(key)), layout)))
         self._rates = np.array(rates)

@@ -15,11 +15,12 @@ from rockflex.foundation.errors import MissingQuantityError
 from rockflex.foundation.shown import number_with_noun
 from rockflex.foundation.values import Value
 from rockflex.models._element_states import element_forces, element_states
+from rockflex.models._named_quantities import joint_forces
 from rockflex.models._reactions import spring_forces
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._spring_model import SpringModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._values_at_states import accelerations_at_states
+from rockflex.models._values_at_states import accelerations_at_states, quantities_at_states
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._energy import EnergyLedger, energy_ledger
 from rockflex.response._export_files import history_variables, write_matlab, write_netcdf
@@ -339,6 +340,11 @@ class History(Value):
         """Rotation of each joint above the base in rad, relative to what is below it, shape (n_states, n_joints)."""
         layout = self.model.layout
         return self.states[:, [HEADER + place for place in layout.rotations[1:]]]
+
+    @property
+    def joint_force(self) -> Array:
+        """Axial force of each joint above the base in N, positive where it is pressed, shape (n_states, n_joints)."""
+        return quantities_at_states(self.model, joint_forces(self.model), self.states)
 
     @property
     def slip(self) -> Array:

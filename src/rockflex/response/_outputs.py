@@ -80,6 +80,7 @@ HISTORY: Mapping[str, Output] = {
     "heave": Output("z", "displacement", "rise of the base at the axis of the masses", of="springs"),
     "spring_force": Output("N_j", "force", "upward force of each spring", of="springs", across="spring"),
     "joint_rotation": Output("θ_j", "rotation", "rotation of each joint above the base", of="joints", across="joint"),
+    "joint_force": Output("N_joint", "force", "axial force of each joint above the base", of="joints", across="joint"),
     "rotation_acceleration": Output("θ''", "angular acceleration", "acceleration of the rotation"),
     "modal_displacement": Output("D_n", "displacement", "modal displacement", across="mode"),
     "modal_velocity": Output("D'_n", "velocity", "modal velocity", across="mode"),
@@ -174,6 +175,12 @@ OUTPUTS: Mapping[str, Output] = {
         "θ_joint", "rotation", "largest rotation of the joints above the base",
         ", relative to what is below; zero without such joints", of="joints",
     ),
+    "min_joint_force": Output(
+        "N_joint", "force", "least axial force of the joints above the base",
+        ", of what stands on them and of tendons; zero without such joints. If it is negative, the model would need a "
+        "joint to pull what is above down; in reality it would lift off",
+        of="joints", worst_is_least=True,
+    ),
     "max_slip": Output(
         "x_max", "displacement", "largest slip of the base along the ground",
         "; zero unless the ground has a `friction`", of="sliding",
@@ -262,6 +269,7 @@ DEMANDS_OF_SET = (
     "max_rotation", "max_top_displacement", "max_total_top_displacement", "max_story_drift", "max_floor_acceleration",
     "max_base_moment", "max_base_shear", "max_horizontal_reaction", "min_vertical_reaction", "max_tendon_force",
     "max_slip", "max_edge_uplift", "max_edge_settlement", "max_permanent_settlement", "max_joint_rotation",
+    "min_joint_force",
 )  # fmt: skip
 """The demands of a set of records."""
 DEMANDS_BY_RECORD = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment",

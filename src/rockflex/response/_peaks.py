@@ -181,6 +181,7 @@ def tracked_quantities(
         parts.append(("element_speeds", element_speeds(model)))
     if model.layout.n_joints:
         parts.append(("joint_rotation", joint_rotations(model)))
+        most.append(("joint_relief", _relief_of_joints(model)))
     if model.springs is None and model.lifts and any(each.rate_dependent for each in under):
         parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
@@ -190,6 +191,12 @@ def tracked_quantities(
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
     peaks = NamedPeakRows.of([*parts, *(more or {}).items()], ("rotation",))  # the engine puts the rotation first
     return TrackedPeaks(peaks, NamedPeakRows.of(most) if most else None)
+
+
+def _relief_of_joints(model: RockingModel) -> Quantities:
+    """Return the axial force of each joint above the base with the other sign: the largest value is the least force."""
+    count = len(model.joints)
+    return Quantities.of(count, model.properties.n_modes, joint_force=-np.eye(count))
 
 
 def _edges(model: RockingModel) -> Quantities:
@@ -262,6 +269,7 @@ def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks)
         else float(final[model.layout.rotation]) - model.rest.rotation,
         "balance_ratio": float(balance_ratio(model, right, left)),
         "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
+        "min_joint_force": -float(np.max(peaks.get("joint_relief", 0.0))),
         "settlement": 0.0 if model.springs is None else -float(final[model.layout.heave]),
         "max_permanent_settlement": max_permanent_settlement(model, final),
         "max_slip": float(peaks.get("slip", 0.0)),
@@ -384,7 +392,7 @@ def _extremes_of(model: RockingModel, peaks: Mapping[str, Array]) -> list[Elemen
     found = list[ElementExtremes]()
     moves, speeds = peaks["element_moves"].reshape(-1, 2).tolist(), peaks["element_speeds"].tolist()
     for place, (high, low), speed in zip(tracked_elements(model), moves, speeds, strict=True):
-        first = float(model.stretch(place, CLOSED)[-1])
+        first = float(model.stretch(place, model.stance_on(CLOSED))[-1])
         found.append(ElementExtremes(min(0.0, first - low), max(0.0, first + high), speed))
     return found
 

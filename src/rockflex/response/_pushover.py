@@ -244,7 +244,9 @@ class _PushoverEquilibria:
         self.elements, self.lifts = model.elements, model.lifts
         self.rest = np.append(model.bent_at_rest(np.zeros(len(self.elements))), 0.0)
         kept = [*range(p.n_modes), layout.rotation]
-        self.rows = np.array([model.stretch(place, RIGHT)[kept] for place in range(len(self.elements))])
+        self.rows = np.array(
+            [model.stretch(place, model.stance_on(RIGHT))[kept] for place in range(len(self.elements))]
+        )
         self.rows = self.rows.reshape(len(self.elements), p.n_modes + 1)
         self.attached = np.array([each.position is None for each in self.elements], dtype=bool)
         self.stiffness = np.diag(np.append(p.effective_mass * p.omega**2, -p.l0r * model.gravity))

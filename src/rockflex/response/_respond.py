@@ -40,6 +40,10 @@ def response_of_solution(model: RockingModel, motion: str, solution: Solution, t
     known |= {f"time_of_max_{name}": float(times[name]) for name in ("rotation", *GLOBAL)}
     if p.top_height is None:
         known["time_of_max_total_top_displacement"] = math.nan
+    known["time_of_min_joint_force"] = 0.0
+    if tracked.extremes is not None and model.joints:
+        least = int(np.argmax(peaks["joint_relief"]))
+        known["time_of_min_joint_force"] = float(tracked.extremes.named(solution.extreme_times)["joint_relief"][least])
     return Response(
         model=model.label,
         motion=motion,
@@ -86,6 +90,8 @@ _values_of = attrgetter(*NAMES)
 
 MAX_OF_STORIES = ("max_ductility", "max_residual_drift_ratio")
 BY_STORY = ("ductility", "residual_drift")
+
+OF_MOVING_BASES = outputs_of("sliding", "springs", "joints")
 
 Columns = dict[str, NDArray[Any]]
 
@@ -172,13 +178,14 @@ def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked:
         "status": np.where(solutions.overturned, 2, rocks.astype(np.int64)),
         "min_vertical_reaction": resting - solutions.lost_support,
         "time_of_min_vertical_reaction": solutions.time_of_lost_support,
+        "time_of_min_joint_force": nothing,
         "max_tendon_force": nothing,
         "tendon_utilisation": nothing,
         "tendon_yield": never,
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
         "balance_ratio": np.maximum(right / balance_right, left / balance_left),
-        **dict.fromkeys(outputs_of("sliding", "springs", "joints"), nothing),
+        **dict.fromkeys(OF_MOVING_BASES, nothing),
         "max_edge_uplift": 2.0 * half_width * lever,
         "leaning_push": leaning,
         "column_pull": np.array(

@@ -56,6 +56,17 @@ def warnings_of_response(model: str, peaks: Mapping[str, Any], units: UnitSystem
                 model=model,
             )
         )
+    if peaks["min_joint_force"] < 0.0:
+        found.append(
+            translated(
+                "The axial force of a joint above the base falls to {force} at {time:.4g} s: {model} pulls what is "
+                "above down there, which no joint can. It would lift off, and what follows is to be read with care. "
+                "Give it a tendon with more prestress, or fewer joints.",
+                force=text("min_joint_force"),
+                time=peaks["time_of_min_joint_force"],
+                model=model,
+            )
+        )
     if peaks["tendon_overload"]:
         found.append(
             translated(
@@ -303,6 +314,8 @@ class Response(HtmlTable, Value):
     residual_rotation: float
     balance_ratio: float
     max_joint_rotation: float
+    min_joint_force: float
+    time_of_min_joint_force: float
     max_slip: float
     residual_slip: float
     max_edge_uplift: float

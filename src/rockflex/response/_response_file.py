@@ -64,6 +64,8 @@ LATER: dict[str, Any] = {
     "may_fall": False,
     "leaning_push": 0.0,
     "max_joint_rotation": 0.0,
+    "min_joint_force": 0.0,
+    "time_of_min_joint_force": 0.0,
     "column_pull": 0.0,
     "settlement": 0.0,
     "max_permanent_settlement": 0.0,

@@ -448,7 +448,8 @@ class Frame(FrameSchema, AssembledStructure):
 
     @cached_property
     def _rocking(self) -> RockingProperties:
-        given = (self.story_height, self.story_mass, self.period, self.half_width)
+        half_width = self.half_width
+        given = (self.story_height, self.story_mass, self.period, half_width)
         if not (
             min(given) > MIN_SAFE and max(given) < MAX_SAFE > self.base_mass and self.aspect_ratio < MAX_ASPECT_RATIO
         ):
@@ -467,10 +468,10 @@ class Frame(FrameSchema, AssembledStructure):
             omega=rate * unit.omega,
             effective_mass=mass,
             effective_height=height,
-            i_theta=inertia + m_tot * self.half_width**2,
+            i_theta=inertia + m_tot * half_width**2,
             l0r=m * length * unit.l0r,
             m_tot=m_tot,
-            half_width=self.half_width,
+            half_width=half_width,
             zeta=np.full(unit.n_modes, self.damping_ratio),
             translational_inertia=max(inertia, float(mass @ height**2)),
             floors=with_changed_fields(floors, heights=heights, force=(m * rate**2) * floors.force),

@@ -251,6 +251,8 @@ class RunPeaks:
     def joined(cls, parts: Iterable[Self]) -> Self:
         """Return the results of several sets of runs, one after another."""
         listed = list(parts)
+        if len(listed) == 1:
+            return listed[0]
         starts = [0, *accumulate(part.count for part in listed)]
         kinds = {name: values.dtype for part in listed for name, values in part.columns.items()}
         columns = {
@@ -327,13 +329,15 @@ def _solutions_by_group(
     runs: Sequence[Scaled], failures: dict[int, InputError | SolverError]
 ) -> Iterator[tuple[list[int], Solutions]]:
     """Yield the places of runs that are solved together, one by one if there are histories, and their solutions."""
-    alike = dict[object, list[int]]()
+    alike, keys = dict[object, list[int]](), dict[PreparedCase, tuple[object, ...]]()
     for place, (case, motion, _) in enumerate(runs):
         if isinstance(case, InputError):
             failures[place] = case
-        else:
-            kind = place if case.history else (*case.batch_key, motion.dt, has_vertical_motion(motion))
-            alike.setdefault(kind, []).append(place)
+            continue
+        if case not in keys:
+            keys[case] = case.batch_key
+        kind = place if case.history else (keys[case], motion.dt, has_vertical_motion(motion))
+        alike.setdefault(kind, []).append(place)
     for places in alike.values():
         try:
             yield places, solve_runs_together(cast("list[PreparedRun]", [runs[place] for place in places]))

@@ -1,7 +1,7 @@
 """Tables of results: the same columns in every chunk, with missing values where a run could not be solved."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -79,23 +79,33 @@ def pandas_columns(values: Table, columns: Columns, missing: "NDArray[np.bool_]"
     """
     import pandas as pd
 
+    everywhere, some = np.ones_like(missing), missing.any()
+
     def column(name: str, kind: type | Sequence[str]) -> Any:
         given: Any = values.get(name)
-        absent = missing if given is not None else np.ones_like(missing)
+        absent = missing if given is not None else everywhere
         known = np.zeros(missing.size) if given is None else given
         if kind is str:
             return pd.array([None] * missing.size if given is None else given, dtype=pd.StringDtype())
         if kind is float:
-            return np.where(absent, np.nan, known)
+            return np.where(absent, np.nan, known) if some or given is None else known.astype(float, copy=False)
         if kind is int:
             return pd.arrays.IntegerArray(known.astype(np.int64), absent.copy())
         if kind is bool:
             return pd.arrays.BooleanArray(known.astype(np.bool_), absent.copy())
         assert not isinstance(kind, type)
         codes = np.where(absent, -1, known).astype(np.int64)
-        return pd.Categorical.from_codes(codes, dtype=pd.CategoricalDtype(list(kind)))
+        return pd.Categorical.from_codes(codes, dtype=categories_of(tuple(kind)))
 
     return {name: column(name, kind) for name, kind in columns.items()}
+
+
+@lru_cache(maxsize=64)
+def categories_of(names: tuple[str, ...]) -> "pd.CategoricalDtype":
+    """Return the type of a column of names, of which pandas checks that they differ."""
+    import pandas as pd
+
+    return pd.CategoricalDtype(list(names))
 
 
 # Every number and flag of a Response, by its name.
@@ -145,13 +155,14 @@ def _has_dissipating_elements(properties: RockingProperties) -> bool:
     return any(each.dissipates or not each.prestressed for each in properties.elements)
 
 
-REACTION = "min_vertical_reaction"
+REACTION, JOINT_FORCE = "min_vertical_reaction", "min_joint_force"
 
 
 class PivotLifts(NamedTuple):
     """Numbers of runs of a case that rock and stand: all, whose pivot would lift, beyond α, and that may fall.
 
-    The last number is that of runs that overturn by a model for small rotations.
+    The last numbers are those of runs that overturn by a model for small rotations, and in which a joint above the base
+    would lift off.
     """
 
     structure: str
@@ -161,6 +172,7 @@ class PivotLifts(NamedTuple):
     beyond: int = 0
     falling: int = 0
     overturned: int = 0
+    joints: int = 0
 
     def __str__(self) -> str:
         return " ".join(self.warnings)
@@ -180,6 +192,17 @@ class PivotLifts(NamedTuple):
                     k=self.lifting,
                     n=self.rocking,
                     column=REACTION,
+                )
+            )
+        if self.joints:
+            found.append(
+                translated(
+                    "{structure}, {model}: in {k} of {n} runs that rock and stand a joint above the base would lift "
+                    "off (min_joint_force below zero). Read what follows in such a run with care.",
+                    structure=self.structure,
+                    model=self.model,
+                    k=self.joints,
+                    n=self.rocking,
                 )
             )
         if self.beyond:
@@ -236,5 +259,7 @@ def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())
         falling = int(each["may_fall"].sum()) if "may_fall" in each else 0
-        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past, falling, fell))
+        joints = int((each[JOINT_FORCE] < 0.0).sum()) if JOINT_FORCE in each else 0
+        lifting = int((each[REACTION] < 0.0).sum())
+        found.append(PivotLifts(structure, model, len(each), lifting, past, falling, fell, joints))
     return found

@@ -176,8 +176,8 @@ class RunMatrix:
 
     def with_structure(self, structure: RockingStructure | RockingProperties) -> Self:
         """Return the runs of the same records and models with one structure in place of all."""
-        other = copy(self)
-        other.structures, other._cases = [structure], {}
+        other = object.__new__(type(self))
+        vars(other).update(vars(self), structures=[structure], _cases={})
         return other
 
     def case(self, structure: int, model: int) -> PreparedCase | InputError:

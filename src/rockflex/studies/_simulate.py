@@ -42,7 +42,7 @@ from rockflex.studies._arguments import (
     wants_history,
 )
 from rockflex.studies._prepared_case import ManyKeywords, PreparedCase, RunOptions, RunPeaks, peaks_of_runs
-from rockflex.studies._result_tables import RESULTS, pandas_columns
+from rockflex.studies._result_tables import RESULTS, categories_of, pandas_columns
 from rockflex.studies._run_matrix import RunMatrix
 from rockflex.studies.parallel import map_runs_in_order
 from rockflex.studies.progress import reporting_progress
@@ -318,9 +318,9 @@ def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categ
     """Return a categorical column; names that occur twice share a category."""
     import pandas as pd
 
-    categories = list(dict.fromkeys(names))
-    places = np.array([categories.index(name) for name in names], dtype=np.int32)
-    return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))
+    categories = {name: place for place, name in enumerate(dict.fromkeys(names))}
+    places = np.array([categories[name] for name in names], dtype=np.int32)
+    return pd.Categorical.from_codes(places[codes], dtype=categories_of(tuple(categories)))
 
 
 def simulate_set(

@@ -85,7 +85,8 @@ def limit_state_labels() -> list[dict[str, Any]]:
     return [each._asdict() for each in LIMIT_STATE_CHOICES]
 
 
-FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
+# In the list; the others follow in their own order.
+FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_avg", "fiv3", "sa_t1", "sd_t1")
 
 
 MeasureName = Annotated[str, check_of_known_names(lambda: [measure.name for measure in _measures_on_page()])]
