@@ -71,6 +71,8 @@ class Run:
         Called now and then, some ten times a second; it may end a run by an exception.
     limit : int
         The `work` that the run may take.
+    marks : bool
+        Whether states beside events, and at the ends of accelerations, are kept.
     """
 
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
@@ -92,7 +94,7 @@ class Run:
         self.journal, self.still = Journal(self.n), np.zeros(0)
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
-        self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
+        self.watch, self.limit, self.which, self.failure, self.marks = None, 2**62, 0, "", False
         self.phase_bytes, self.failed, self.first, self.decay, self.shakes = 0, False, 0, PhaseDecay(), False
         self.restart(state, key, which)
 
@@ -341,8 +343,7 @@ class Run:
             i = self.advance_over(ground, rise, self.scratch)
         else:
             i = self.advance_over(ground, rise, self.unkept)
-        self.passed += i
-        self.reached = 0
+        self.passed, self.reached = self.passed + i, 0
         if self.overflows():
             with cython.gil:
                 self.failure = "growth"
@@ -377,7 +378,7 @@ class Run:
         start: cython.int
         last: cython.int = a.shape[0] - 1
         self.flow.resume(history)
-        if history and self.journal.wants(a[0], self.rise_at(v, 0)):
+        if (history or self.marks) and self.journal.wants(a[0], self.rise_at(v, 0)):
             self.journal.keep(self.passed, a[0], self.rise_at(v, 0), self.y, self.now)
         while i < last and not self.ended:
             start = i
@@ -398,6 +399,8 @@ class Run:
                 self.search(a, v, False)  # otherwise it has paused to look up, which must not change what is counted
             self.check_stop_request()
         self.search(a, v, True)
+        if self.marks and not history and not self.ended:
+            self.journal.keep(self.passed + i, a[i], self.rise_at(v, i), self.y, self.now)
         return i
 
     def rise_at(self, v, i):
@@ -418,10 +421,7 @@ class Run:
         return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:
-        """Advance without excitation until no condition can fail, and no output exceed its peak; whether that was so.
-
-        It is at most so many samples.
-        """
+        """Advance until no condition can fail, and no output exceed its peak; whether that was so in `most` samples."""
         return bool(self.settle_over(min(most, 2**62), history))
 
     def settle_over(self, most, history):
@@ -484,12 +484,12 @@ class Run:
                 with cython.gil:
                     self.refuse(event, self.passed + i + u)
             a, rise = start + (end - start) * u, v[0] + (v[1] - v[0]) * u
-            if history and at_once == 1:
+            if at_once == 1 and (history or self.marks):
                 self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
             self.leave(event, self.passed + i + u, a, rise)
             if self.ended:
                 return 0
-            if history:
+            if history or self.marks:
                 self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
         if history:
             self.journal.keep(self.passed + i + 1, end, v[1], self.y, self.now)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_instance, is_one_of
+from rockflex.foundation.checks import checked_instance, checked_instances, is_one_of
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.html import HtmlTable, value_range_text
@@ -66,17 +66,10 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
     name: str = ""
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
-        if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(
-                f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
-            )
-        members = tuple(motions)
+        members = checked_instances("motions", motions, GroundMotion)
         checked_instance("name", name, str)
         if not members:
             raise InputError("A suite needs at least one motion, but none was given.")
-        for motion in members:
-            if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-                raise InputError(f"A suite holds GroundMotion objects, but {type(motion).__name__} was given.")
         repeated = [key for key, count in Counter(motion.name for motion in members).items() if count > 1]
         if repeated:
             names = ", ".join(map(repr, repeated[:5]))

@@ -11,8 +11,9 @@ from rockflex.fragility._limit_states import LIMIT_STATES, NOMINAL, ROCKING
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
-from rockflex.structure._jointed import joints_at
+from rockflex.structure._joint import Joint
 from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.structure.file._wrappers import WRAPPERS, wrapper_arguments
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.studies._prepared_case import yielding_model_labels
 from rockflex.studies.cloud import CloudStudy
@@ -255,21 +256,9 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
     lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
     made = ", ".join(_python_call(type(each).__name__, element_parameters(each)) for each in elements)
-    if entry.leaning_masses is not None:
-        lines.append(f"structure = rf.Leaning(structure, {_python_literal(entry.leaning_masses)})")
-    if entry.stories is not None:
-        lines.append(
-            f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
-        )
-    if entry.podium is not None:
-        lines.append(f"structure = rf.Podium(structure, {_python_named_arguments(entry.podium.model_dump())})")
-    if entry.joints is not None:
-        joints = ", ".join(_python_call("Joint", vars(each)) for each in joints_at(**entry.joints.model_dump()))
-        lines.append(f"structure = rf.Jointed(structure, [{joints}])")
-    if entry.eccentricity:
-        lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
-    if entry.one_sided is not None:
-        lines.append(f"structure = rf.OneSided(structure, {_python_named_arguments(entry.one_sided.model_dump())})")
+    for key, value in entry.wrappers.items():
+        arguments = _python_named_arguments(wrapper_arguments(key, value))
+        lines.append(f"structure = rf.{WRAPPERS[key][0].__name__}(structure, {arguments})")
     if made:
         lines.append(f"structure = rf.Restrained(structure, [{made}])")
     return lines
@@ -302,7 +291,7 @@ def _python_named_arguments(values: Mapping[str, Any]) -> str:
 def _python_literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _python_literal(value.tolist())
-    if isinstance(value, LumpedMasses | Section):
+    if isinstance(value, LumpedMasses | Section | Joint):
         return _python_call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {_python_literal(each)}' for key, each in value.items())}}}"
