@@ -8,7 +8,7 @@ import numpy as np
 
 from rockflex.engine.field import Jump
 from rockflex.engine.system import VERTICAL, Event, Key, LinearPhase
-from rockflex.engine.tables import rates_and_rows, spectral_radius_bound
+from rockflex.engine.tables import rates_of, rows_of, spectral_radius_bound
 from rockflex.engine.tangent_pass import Crossing
 from rockflex.engine.tangent_steps import Motion
 from rockflex.foundation.arrays import Array, Integers
@@ -54,7 +54,7 @@ class PhaseNumbers(NamedTuple):
 
 def numbers_of_phase(phase: LinearPhase) -> PhaseNumbers:
     """Return the numbers of a phase of a stack of systems."""
-    rates, rows = rates_and_rows(phase)
+    rates, rows = rates_of(phase), rows_of(phase)
     rates_v, rows_v = np.zeros_like(rates[..., :-1]), np.zeros_like(rows[..., :-1])
     m = phase.d.shape[1]
     for name, to in zip(
