@@ -30,6 +30,7 @@ from rockflex.web._selection import (
 )
 from rockflex.web._state import ROTATION, PageState, PulseChoice, TargetChoice, limit_of_choice
 from rockflex.web._structure import build_page_structure
+from rockflex.web._uploads import motion_file_name
 
 
 def response_script(state: PageState, upload_name: str = "record") -> str:
@@ -135,6 +136,33 @@ def record_set_script(state: PageState, study: Any) -> str:
             "table = rf.check(found, limits)",
             "print(table.to_frame().to_string())",
             'rf.write_report(found, "report.html", structure=structure, limits=limits)',
+        ],
+        yields=yields,
+    )
+
+
+def tornado_script(state: PageState, study: Any) -> str:
+    """Return a program that repeats the tornado of the Response tab, in `bars`."""
+    choice, scale = state.record_set, state.record_set.scale
+    if choice.shown:
+        scaled = [] if scale == 1.0 else [f"motions = [motion.scaled({scale!r}) for motion in motions]"]
+        lines, acting = [_suite_motions_code(choice.suites), *scaled], "motions"
+    else:
+        own = state.record.source in ("upload", "folder")
+        lines, acting = _motion_code_lines(state, motion_file_name(study.motions[0]) if own else ""), "motion"
+    yields = bool(yielding_model_labels([study.model]))
+    extra = f"demand={study.demand!r}, free_vibration={state.free_vibration!r}{_impact_law_code(state)}"
+    # A ground of the structure as it is: a function of each structure would have no numbers to change.
+    extra += "" if state.ground is None else ", ground=ground(structure.rocking())"
+    extra += ", bouc_wen=yielding" if yields else ""
+    return _python_program(
+        state,
+        lines,
+        [
+            f"ranges = {_python_literal(study.ranges)}",
+            f"bars = rf.tornado(structure, {acting}, {study.model!r}, ranges, {extra})",
+            "print(bars.to_frame().to_string())",
+            'rf.save_figure(rf.plot_tornado(bars), "tornado.svg")',
         ],
         yields=yields,
     )
