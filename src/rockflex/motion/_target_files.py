@@ -138,7 +138,8 @@ def read_conditional_spectrum(
     >>> import rockflex as rf
     >>> from pathlib import Path
     >>> _ = Path("model.csv").write_text("period (s), median (g), sigma\n"
-    ...     "0.05, 0.30, 0.60\n0.2, 0.52, 0.65\n1.0, 0.16, 0.68\n2.0, 0.07, 0.72\n")
+    ...     "0.05, 0.30, 0.60\n0.2, 0.52, 0.65\n"
+    ...     "1.0, 0.16, 0.68\n2.0, 0.07, 0.72\n")
     >>> rf.read_conditional_spectrum("model.csv", 1.0, epsilon=1.5)
     ConditionalSpectrum('model', S_a(1 s) = 4.353 m/s², 0.05 to 2 s, ζ = 0.05)
     """

@@ -263,7 +263,7 @@ class MonteCarloStudy(LimitKeys, RunsStudySpec):
         InputError
             If a variable or a formula is wrong.
         """
-        taken = dict.fromkeys((*_COLUMNS, *(self.demands or {})), "a column of the table")
+        taken = dict.fromkeys((*_COLUMNS, *self.all_demands), "a column of the table")
         return RandomPopulation(
             RandomVariables(self.variables, taken | FACTS), self.structure, self._folder, self.ground
         )
