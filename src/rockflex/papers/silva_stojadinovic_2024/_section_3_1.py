@@ -1,9 +1,9 @@
 """Section 3.1, Figures 3 and 4: equivalents of two tested specimens under a pulse and under El Centro."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
 from rockflex.report._document import ConstructionCheck, PublishedNumber, Remark, ReproducedResult, decimal_text
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LINES = {
     "2DOF-C": ("black", "-"), "2DOF-C-SI": ("green", "--"), "2DOF-S": ("red", ":"), "MDOF-S": ("blue", "--"),
@@ -37,7 +40,8 @@ BY_CONSTRUCTION = "the equivalent is built so"
 
 Free = Mapping[str, tuple[float, ...]]
 Make = Callable[..., rf.RockingProperties]
-Run = Callable[[rf.RockingProperties, str], rf.Response]
+Structures = Sequence[rf.RockingProperties]
+Run = Callable[[Structures, str], list[rf.Response]]  # those that differ only in numbers are prepared together
 FIGURE_3 = "Specimen 2Hz-Long Base(14) under an antisymmetric Ricker pulse, by an equivalent"
 LABEL_3 = "Equivalent of 2Hz-Long Base(14), not the specimen; Ricker pulse 0.1 g, 0.5 s"
 PLACE = "Section 3.1"
@@ -69,7 +73,7 @@ def parameter_combinations(free: Free) -> list[dict[str, float]]:
 
 def responses_of_four_models(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Response]:
     """Return the responses of the four models by name."""
-    return {model: run(properties, model) for model in SPECIMEN_MODELS}
+    return {model: run([properties], model)[0] for model in SPECIMEN_MODELS}
 
 
 def largest_to_smallest_ratio(values: Iterable[float]) -> float:
@@ -92,7 +96,7 @@ def drawings_of_responses(
 
     def spread() -> Any:
         cases = [make(**case) for case in parameter_combinations(free)]
-        varied = [[run(case, model) for case in cases] for model in responses]
+        varied = [run(cases, model) for model in responses]
         return rf.plot_spread(nominals, varied, panels=panels, title=title)
 
     def history() -> Any:
@@ -102,17 +106,20 @@ def drawings_of_responses(
     return {name: history, f"{name}-spread": spread}
 
 
-def run_figure_3(properties: rf.RockingProperties, model: str) -> rf.Response:
-    """Run a structure under the pulse of the test."""
-    return rf.simulate(properties, rf.ricker_pulse(0.1 * 9.81, 0.5), model, free_vibration=4.0)
+def run_figure_3(structures: Structures, model: str, workers: int | None) -> list[rf.Response]:
+    """Run structures under the pulse of the test."""
+    pulse = rf.ricker_pulse(0.1 * 9.81, 0.5)
+    return rf.simulate_many(structures, pulse, model, "history", free_vibration=4.0, workers=workers)[
+        "response"
+    ].tolist()
 
 
-def figure_3(_: PaperRecords) -> ReproducedResult:
+def figure_3(records: PaperRecords) -> ReproducedResult:
     """Run the four models."""
     make: Make = rf.equivalent_2hz_long_base
-    properties = make(**nominal_parameters(TWO_HZ))
-    runs = responses_of_four_models(properties, run_figure_3)
-    figures = drawings_of_responses("figure-3", LABEL_3, runs, TWO_HZ, make, run_figure_3)
+    properties, run = make(**nominal_parameters(TWO_HZ)), partial(run_figure_3, workers=records.workers)
+    runs = responses_of_four_models(properties, run)
+    figures = drawings_of_responses("figure-3", LABEL_3, runs, TWO_HZ, make, run)
     return ReproducedResult(
         "figure-3", FIGURE_3, _numbers_of_figure_3(properties, runs), figures, NOTE_3,
         _checks_of_figure_3(properties, runs["2DOF-C"]), (partial(_friction_with_both_signs, properties, runs),),
@@ -205,31 +212,34 @@ def _simplified_moment_excess(p: rf.RockingProperties, response: rf.Response) ->
     return float(np.mean((weight - arm * theta) / complete) - 1.0)
 
 
-def run_figure_4(
-    properties: rf.RockingProperties, model: str, output: Literal["history", "peaks"] = "history"
-) -> rf.Response:
-    """Run the free motion of a structure after its release."""
+def _released(
+    structures: Structures, models: Sequence[str], output: Literal["history", "peaks"], workers: int | None
+) -> "pd.DataFrame":
+    """Run the free motion of structures after their release."""
     start = rf.InitialState(rotation=RELEASE)
-    return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, output, initial=start)
+    return rf.simulate_many(structures, rf.quiet_motion(3.0, 0.001), models, output, initial=start, workers=workers)
 
 
-def figure_4(_: PaperRecords) -> ReproducedResult:
+def run_figure_4(structures: Structures, model: str, workers: int | None) -> list[rf.Response]:
+    """Run the free motion of structures after their release."""
+    return _released(structures, [model], "history", workers)["response"].tolist()
+
+
+def figure_4(records: PaperRecords) -> ReproducedResult:
     """Run the four models, and the top displacement of two of them over all combinations."""
-    properties = rf.equivalent_s1(**nominal_parameters(S1))
-    runs = responses_of_four_models(properties, run_figure_4)
-    figures = drawings_of_responses("figure-4", LABEL_4, runs, S1, rf.equivalent_s1, run_figure_4, FIRST_CYCLES)
-    return ReproducedResult(
-        "figure-4", FIGURE_4, _numbers_of_figure_4(runs), figures, NOTE_4, _checks_of_figure_4(properties)
-    )
+    properties, run = rf.equivalent_s1(**nominal_parameters(S1)), partial(run_figure_4, workers=records.workers)
+    runs = responses_of_four_models(properties, run)
+    figures = drawings_of_responses("figure-4", LABEL_4, runs, S1, rf.equivalent_s1, run, FIRST_CYCLES)
+    numbers = _numbers_of_figure_4(runs, _top_displacement_changes(records.workers))
+    return ReproducedResult("figure-4", FIGURE_4, numbers, figures, NOTE_4, _checks_of_figure_4(properties))
 
 
-def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
+def _numbers_of_figure_4(runs: dict[str, rf.Response], changes: Array) -> list[PublishedNumber]:
     every = runs["MDOF-S"]
     printed = every.required_friction_excluding_impacts(0.0, printed=True)
     friction = float("inf") if printed > BOUNDLESS else printed
     alone = ("2DOF-C", "2DOF-C-SI", "2DOF-S")
     change = 100.0 * (runs["MDOF-S"].max_top_displacement / runs["2DOF-S"].max_top_displacement - 1.0)
-    changes = _top_displacement_changes()
     return [
         compare.swept(
             "u_top,max of MDOF-S over 2DOF-S, less 1", PLACE, "about −21", change, changes, "%",
@@ -261,10 +271,9 @@ def _checks_of_figure_4(p: rf.RockingProperties) -> tuple[ConstructionCheck, ...
     )
 
 
-def _top_displacement_changes() -> Array:
+def _top_displacement_changes(workers: int | None) -> Array:
     """Compare u_top,max of MDOF-S and 2DOF-S, in per cent, over all combinations."""
     made = [rf.equivalent_s1(**case) for case in parameter_combinations(S1)]
-    every, one = (
-        np.array([run_figure_4(p, model, "peaks").max_top_displacement for p in made]) for model in ("MDOF-S", "2DOF-S")
-    )
+    runs = _released(made, ("MDOF-S", "2DOF-S"), "peaks", workers)
+    every, one = runs["max_top_displacement"].to_numpy(dtype=float).reshape(-1, 2).T
     return 100.0 * (every / one - 1.0)
