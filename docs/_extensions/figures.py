@@ -32,6 +32,7 @@ SCRIPTS = {
     "settling_footing": ("figure", 0),
     "fragility_of_a_frame": ("curves", 0),
     "ida_with_resurrections": ("curves", 0),
+    "how_sure": ("tornado", 0),
 }
 SIZE, DPI = (400, 280), 150  # pixels of a thumbnail, and dots an inch
 PANELS = Path("gallery", "images", "panels")

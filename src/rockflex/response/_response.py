@@ -366,6 +366,7 @@ class Response(HtmlTable, Value):
     element_energy = _OfHistory[Array]()
     element_state = _OfHistory[Array]()
     joint_rotation = _OfHistory[Array]()
+    joint_force = _OfHistory[Array]()
     permanent_settlement = _OfHistory[Array]()
     slip = _OfHistory[Array]()
     slip_velocity = _OfHistory[Array]()
