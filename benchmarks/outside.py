@@ -25,7 +25,7 @@ from rockflex.engine.solvers import SolverPool
 from rockflex.engine.system import System
 
 COUNT, ROUNDS = 100, 11
-PARTS_WITH_LOCK = ("parts_of_events", "room_of_tables", "roots_and_vectors", "rates_and_rows", "shift_of")
+PARTS_WITH_LOCK = ("parts_of_events", "room_of_tables", "roots_and_vectors", "rates_of", "rows_of", "shift_of")
 
 
 class Timed:

@@ -302,8 +302,36 @@ def motions() -> Calls:
             rf.TargetSpectrum,
             {"periods": [0.1, 1.0], "sa": [2.0, 1.0], "damping_ratio": 0.05, "name": "a"},
         ),
+        "ConditionalSpectrum": (
+            rf.ConditionalSpectrum,
+            {
+                "periods": [0.1, 1.0],
+                "sa": [2.0, 1.0],
+                "dispersion": [0.5, 0.0],
+                "period": 1.0,
+                "damping_ratio": 0.05,
+                "name": "a",
+            },
+        ),
+        "conditional_spectrum": (
+            rf.conditional_spectrum,
+            {
+                "periods": [0.1, 1.0],
+                "median": [2.0, 1.0],
+                "dispersion": [0.6, 0.6],
+                "period": 1.0,
+                "epsilon": 1.0,
+                "damping_ratio": 0.05,
+                "name": "a",
+            },
+        ),
+        "spectral_correlation": (rf.spectral_correlation, {"first": [0.1, 1.0], "second": [1.0, 1.0]}),
         "target.at": (target.at, {"periods": [0.5]}),
         "target.scaled": (target.scaled, {"factor": 2.0}),
+        "read_conditional_spectrum": (
+            rf.read_conditional_spectrum,
+            {"path": "nothing.csv", "period": 1.0, "epsilon": 1.0, "units": "g"},
+        ),
         "read_target": (rf.read_target, {"path": "nothing.csv", "units": "g"}),
         "ec8_spectrum": (
             rf.ec8_spectrum,

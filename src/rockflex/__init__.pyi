@@ -38,6 +38,7 @@ from .models import Restitution as Restitution
 from .models import VVELComplete as VVELComplete
 from .models import VVELSimplified as VVELSimplified
 from .models import restitution_from_decay as restitution_from_decay
+from .motion import ConditionalSpectrum as ConditionalSpectrum
 from .motion import GroundMotion as GroundMotion
 from .motion import RecordInfo as RecordInfo
 from .motion import RotatedSpectrum as RotatedSpectrum
@@ -46,6 +47,7 @@ from .motion import Suite as Suite
 from .motion import TargetSpectrum as TargetSpectrum
 from .motion import asce7_site_spectrum as asce7_site_spectrum
 from .motion import asce7_spectrum as asce7_spectrum
+from .motion import conditional_spectrum as conditional_spectrum
 from .motion import ec8_second_spectrum as ec8_second_spectrum
 from .motion import ec8_spectrum as ec8_spectrum
 from .motion import half_sine_pulse as half_sine_pulse
@@ -61,6 +63,7 @@ from .motion import read_target as read_target
 from .motion import rectangular_pulse as rectangular_pulse
 from .motion import ricker_pulse as ricker_pulse
 from .motion import rotated_spectrum as rotated_spectrum
+from .motion import spectral_correlation as spectral_correlation
 from .motion import suite_names as suite_names
 from .papers.silva_stojadinovic_2024 import equivalent_2hz_long_base as equivalent_2hz_long_base
 from .papers.silva_stojadinovic_2024 import equivalent_s1 as equivalent_s1
@@ -250,4 +253,5 @@ from .motion import StationRecord as StationRecord
 from .motion import SurveyEntry as SurveyEntry
 from .motion import group_stations as group_stations
 from .motion import read_components as read_components
+from .motion import read_conditional_spectrum as read_conditional_spectrum
 from .motion import survey_records as survey_records

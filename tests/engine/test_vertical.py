@@ -8,6 +8,7 @@ from engine.test_systems import uncompiled
 from rockflex import InputError
 from rockflex.engine import Event, LinearPhase, Rest, Run, StateLayout, System
 from rockflex.engine.batch import Batch
+from rockflex.engine.preparation import bounds_of
 from rockflex.engine.shaken import MAX_FED, NODES, shaken_of
 
 OMEGA, GAP, H = 7.0, 0.05, 0.02
@@ -137,7 +138,7 @@ def test_a_parametric_oscillator(size, omega, scale):
 
 
 def test_a_fast_mode_takes_more_nodes():
-    slow, fast = (shaken_of(mathieu(omega).checked(0), H, 2) for omega in (5.0, 140.0))
+    slow, fast = (shaken_of(mathieu(omega).checked(0), H, bounds_of) for omega in (5.0, 140.0))
     assert (slow.nodes, fast.nodes) == NODES
     assert min(slow.limit[0, 0, 0], fast.limit[0, 0, 0]) > 30.0
 

@@ -53,6 +53,22 @@ def test_document_is_the_selection():
     assert found["options"]["scale_limits"] == [0.5, 3.0]
 
 
+def test_a_conditional_spectrum(tmp_path):
+    model = tmp_path / "model.csv"
+    model.write_text("period (s), median (g), sigma\n0.1, 0.5, 0.6\n1.0, 0.25, 0.65\n3.0, 0.06, 0.7\n", "utf-8")
+    usual = (SUITE, "--count", 12, "--periods", "0.2,2", "--limits", "0.1,10")
+    for ordinate, given in (("epsilon=0.5", {"epsilon": 0.5}), ("sa=0.4g", {"sa": 0.4 * G})):
+        target = rf.read_conditional_spectrum(model, 1.0, **given)
+        chosen = rf.load_suite(SUITE).select(target, 12, (0.2, 2.0), scale_limits=(0.1, 10.0))
+        flags = (*usual, "--target", f"cs:file={model},period=1,{ordinate}")
+        found = json.loads(invoke(*flags, "--json").stdout)
+        assert [row["record"] for row in found["records"]] == list(chosen.suite.names)
+        assert (found["misfit"], found["spread_misfit"]) == (chosen.misfit, chosen.spread_misfit)
+        assert found["target"]["dispersion"] == target.dispersion.tolist()
+        assert f"Median: misfit {chosen.misfit:.3g}" in invoke(*flags).stdout
+    assert "period is missing" in refused(*usual, "--target", f"cs:file={model}")
+
+
 @pytest.mark.parametrize(
     ("text", "target"),
     [

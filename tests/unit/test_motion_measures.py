@@ -6,8 +6,11 @@ import math
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
+from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PPoly
 from scipy.optimize import brentq
+from scipy.signal import butter, find_peaks, lfilter
+from scipy.stats import gmean
 from typer.testing import CliRunner
 
 import rockflex as rf
@@ -131,8 +134,76 @@ def test_simple_closed_forms():
     assert swing.pgv == pytest.approx(0.25)
 
 
+@pytest.mark.parametrize("period", [0.3, 1.0, 2.5])
+def test_average_spectral_acceleration(period):
+    ordinates = [EL_CENTRO.sa(k * period / 10.0, 0.02) for k in range(2, 31)]
+    assert EL_CENTRO.sa_avg(period, 0.02) == pytest.approx(gmean(ordinates), rel=1e-13)
+    with pytest.raises(InputError, match="period must be") as caught:
+        EL_CENTRO.sa_avg(0.0)
+    assert caught.value.field == "period"
+
+
+def scipy_fiv3(motion, period, alpha, beta):
+    """FIV3 by SciPy's bilinear filter, trapezia and peaks of a record sampled so finely that they are exact to 1e-5."""
+    fine = motion.refined(math.ceil(motion.dt / period * 3e3))
+    a = np.append(fine.acceleration, np.zeros(math.ceil(2.0 * alpha * period / fine.dt)))
+    y = lfilter(*butter(2, beta / period, fs=1.0 / fine.dt), a)
+    whole, t = cumulative_trapezoid(y, dx=fine.dt, initial=0.0), np.arange(fine.acceleration.size)
+    gained = np.interp(t + alpha * period / fine.dt, np.arange(a.size), whole) - whole[t]
+    return max(np.sort(side[find_peaks(side)[0]])[-3:].sum() for side in (gained, -gained))
+
+
+@pytest.mark.parametrize("period", [0.2, 1.0, 3.0])
+@pytest.mark.parametrize(("alpha", "beta"), [(0.7, 0.85), (0.31, 1.5)])
+def test_filtered_incremental_velocity_against_scipy(period, alpha, beta):
+    # Steps that are long for the filter, too: it is exact between samples.
+    for motion in (EL_CENTRO, GroundMotion(EL_CENTRO.acceleration[::5], 5.0 * EL_CENTRO.dt)):
+        found = motion.fiv3(period, alpha, beta)
+        assert found == pytest.approx(scipy_fiv3(motion, period, alpha, beta), rel=1e-4)
+
+
+@pytest.mark.parametrize("period", [0.05, 0.6, 2.0])
+def test_filtered_incremental_velocity_of_a_sine(period):
+    """In the steady state every peak of V_s is 2 A/ω sin(ω α T/2), with A = a / √(1 + (f T/β)⁴)."""
+    f, alpha, beta = 1.0, 0.7, 0.85
+    t = np.arange(0.0, 40.0, 0.001)
+    growth = np.sin(0.5 * np.pi * np.clip(np.minimum(t, 40.0 - t) / 15.0, 0.0, 1.0)) ** 2  # no transients
+    motion = GroundMotion(growth * np.sin(2.0 * np.pi * f * t), 0.001)
+    amplitude = 1.0 / math.sqrt(1.0 + (f * period / beta) ** 4)
+    peak = 2.0 * amplitude / (2.0 * math.pi * f) * abs(math.sin(math.pi * f * alpha * period))
+    assert motion.fiv3(period) == pytest.approx(3.0 * peak, rel=2e-3)
+
+
+@pytest.mark.parametrize("period", [0.4, 2.0])
+def test_filtered_incremental_velocity_of_an_impulse(period):
+    """V_s = S(x) - S(x - q) with S = 1 - exp(-x) (cos x + sin x), x = ω t/√2: peaks fall by exp(-2π) each."""
+    dt, q = 1e-4 * period, math.sqrt(2.0) * math.pi * 0.85 * 0.7
+    motion = GroundMotion(np.concatenate((np.zeros(9), [1.0 / dt], np.zeros(100_000))), dt)  # a velocity of 1 m/s
+    x = math.atan2(math.exp(q) * math.sin(q), math.exp(q) * math.cos(q) - 1.0) % math.pi
+    x += math.pi * math.ceil((q - x) / math.pi)
+
+    def step(x):
+        return 1.0 - math.exp(-x) * (math.cos(x) + math.sin(x))
+
+    peak = step(x) - step(x - q)
+    assert motion.fiv3(period) == pytest.approx(
+        peak * (1.0 + math.exp(-2.0 * math.pi) + math.exp(-4.0 * math.pi)), rel=1e-6
+    )
+
+
+def test_filtered_incremental_velocity_of_short_windows():
+    """Without a filter, a short window sees the highest acceleration, and a mirrored record has the same measure."""
+    pulse = GroundMotion(np.append(np.zeros(300), np.sin(np.pi * np.linspace(0.0, 1.0, 101))), 0.005)
+    assert pulse.fiv3(0.02, alpha=0.5, beta=10.0) == pytest.approx(0.01, rel=1e-3)
+    assert pulse.scaled(-2.0).fiv3(1.0) == pytest.approx(2.0 * pulse.fiv3(1.0), rel=1e-13)
+    with pytest.raises(InputError, match="beta must be") as caught:
+        pulse.fiv3(1.0, beta=-1.0)
+    assert caught.value.field == "beta"
+
+
 def test_quiet_motion_has_no_measure():
     quiet = quiet_motion(1.0)
+    assert (quiet.sa_avg(1.0), quiet.fiv3(1.0)) == (0.0, 0.0)
     assert (quiet.pga, quiet.pgv, quiet.pgd, quiet.arias, quiet.cav) == (0, 0, 0, 0, 0)
 
 
@@ -191,6 +262,8 @@ def test_without_a_structure_its_measures_are_missing():
 def test_the_spectrum_of_a_stiff_structure_is_the_peak_of_the_ground():
     stiff = MeasureInput(EL_CENTRO, omega=1e8, damping_ratio=0.02)
     assert MEASURES["sa_t1"].of(stiff) == MEASURES["sa_t1_5"].of(stiff) == pytest.approx(EL_CENTRO.pga)
+    assert MEASURES["sa_avg"].of(stiff) == pytest.approx(EL_CENTRO.pga)
+    assert 0.0 < MEASURES["fiv3"].of(stiff) <= 3.0 * 0.7 * 2.0 * math.pi / 1e8 * EL_CENTRO.pga
 
 
 @pytest.mark.usefixtures("added")

@@ -469,7 +469,7 @@ def test_stations_bring_their_vertical_component():
     both = rf.GroundMotion([0.0, 1.0, 0.0], 0.1, "A", rf.RecordInfo(rsn=3), vertical=[0.0, 0.5, 0.0])
     (found,) = rf.group_stations([both])
     assert found.vertical.pga == 0.5
-    with pytest.raises(rf.InputError, match="motions must be a sequence of GroundMotion objects, but int was given"):
+    with pytest.raises(rf.InputError, match="motions must be a sequence of GroundMotion objects, but 3 was given"):
         rf.group_stations(3)
     with pytest.raises(rf.InputError, match="motions must hold GroundMotion objects, but str was given"):
         rf.group_stations(["a"])

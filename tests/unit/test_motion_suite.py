@@ -41,7 +41,7 @@ def test_is_a_sequence_and_a_mapping():
     ("motions", "text"),
     [
         ([], "needs at least one motion"),
-        ([MOTIONS[0], 3], "holds GroundMotion objects, but int was given"),
+        ([MOTIONS[0], 3], "hold GroundMotion objects, but int was given"),
         ([MOTIONS[0], MOTIONS[0]], "need different names, but 'm1' occurs more than once"),
     ],
 )

@@ -189,7 +189,10 @@ def test_a_hazard_curve_in_a_file_states_its_damping():
         (lambda: rf.TendonLevel(0.1, 0.0, 0.0), "yield_ratio must be a positive, finite number in W, but 0.0 was"),
         (lambda: rf.TendonLevel(0.5, 0.0, 0.4), "prestress_ratio must not exceed yield_ratio, 0.4, but 0.5 was given."),
         (lambda: rf.run_design(STRUCTURE, SUITE[0], []), "half_widths must be one or more positive numbers in m, but"),
-        (lambda: rf.run_design(STRUCTURE, SUITE[0], [1.0], [0.2]), "tendons[0] is float. Expected a TendonLevel."),
+        (
+            lambda: rf.run_design(STRUCTURE, SUITE[0], [1.0], [0.2]),
+            "tendons must hold TendonLevel objects, but float was given.",
+        ),
         (
             lambda: rf.run_design(
                 rf.Restrained(STRUCTURE, [rf.Tendon(1.0, 1.0, -0.5), rf.Tendon(1.0, 1.0, 0.5)]), SUITE[0], [0.4]

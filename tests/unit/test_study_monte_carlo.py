@@ -348,3 +348,24 @@ def test_messages(changes, said):
         study(**changes).plan()
     assert said in str(caught.value)
     assert "pydantic" not in str(caught.value)
+
+
+def test_sensitivities_are_columns_of_runs_that_stand(tmp_path):
+    example = Path(__file__).parents[2] / "examples" / "reference_set.toml"
+    study = rf.load_study(example).model_copy(update={"count": 3})
+    runs = rf.run_study(study, tmp_path / "out")
+    assert len(runs) == 3 * 4 * 4
+    column = runs["sensitivity_max_rotation"]
+    assert column[runs["status"] != "rocking"].isna().all()
+    assert column[runs["status"] == "rocking"].notna().all()
+    suite = study.records.load(example.parent)
+    for _, row in runs[runs["status"] == "rocking"].head(4).iterrows():
+        motion = suite[row["motion"]].scaled(row["scale"])
+        alone = rf.simulate(study.structure_of(row["number"]), motion, "MDOF-S", free_vibration="settle")
+        assert row["sensitivity_max_rotation"] == alone.sensitivity["max_rotation"]
+
+
+def test_sensitivity_of_what_has_none_is_refused():
+    study = rf.load_study(Path(__file__).parents[2] / "examples" / "reference_set.toml")
+    with pytest.raises(rf.InputError, match=r"sensitivities must be among .* 'status' was given"):
+        type(study)(**{**study.model_dump(exclude={"sensitivities"}), "sensitivities": ["status"]})

@@ -168,7 +168,7 @@ def test_python_says_the_same():
         PopulationStudy(records={"suites": ["el-centro-1940"]}, pairs=0)
     with pytest.raises(rf.InputError, match=r"seed must be what the draws depend on, .*, but -1 was given\."):
         PopulationStudy(records={"suites": ["el-centro-1940"]}, seed=-1)
-    with pytest.raises(rf.InputError, match="levels is missing: a list of levels of the measure, in SI units"):
+    with pytest.raises(rf.InputError, match="structures must be one or more tables"):
         StripeStudy(records={"suites": ["el-centro-1940"]}, structures=[])
 
 

@@ -192,6 +192,7 @@ VALUES = {
     rf.SurveyEntry: lambda: survey().entries[0],
     rf.Finding: lambda: rf.Finding("unit", "g", 'label "acc (g)"'),
     rf.TaperedTower: lambda: rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02),
+    rf.ConditionalSpectrum: lambda: rf.ConditionalSpectrum([0.1, 1.0], [5.0, 2.0], [0.5, 0.0], 1.0, 0.02, "site"),
     rf.TargetSpectrum: lambda: rf.TargetSpectrum([0.1, 1.0], [5.0, 2.0], 0.02, "site"),
     rf.Tendon: lambda: tendons()[0],
     rf.TendonLevel: lambda: rf.TendonLevel(0.5, 0.5),

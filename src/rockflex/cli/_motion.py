@@ -1,6 +1,7 @@
 """``rockflex motion``: contents and measures of records and suites; ``rockflex survey``: the records in a folder."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated, Any
@@ -99,6 +100,8 @@ def _units_of_measures() -> dict[str, str]:
         "duration": "s",
         **{measure.name: measure.unit for measure in (*record_measures(), *vertical_measures())},
         "sa_*": "m/s², at the period in s",
+        "sa_avg_*": "m/s², from 0.2 to 3 times the period in s",
+        "fiv3_*": "m/s, for the period in s",
         "sa_vertical_*": "m/s², at the period in s",
         "v_h_*": "",
         "metadata.distance_km": "km",
@@ -114,7 +117,11 @@ def _measures_of_motion(item: "FoundMotion", periods: Sequence[float], damping: 
     from rockflex.motion._measures import MeasureInput, record_measures, vertical_measures
 
     motion, shaking = item.motion, MeasureInput(item.motion)
-    spectral = {"sa": motion.spectrum(periods, damping).sa}
+    spectral: dict[str, Iterable[float]] = {
+        "sa": motion.spectrum(periods, damping).sa,
+        "sa_avg": (motion.sa_avg(period, damping) if period else math.nan for period in periods),
+        "fiv3": (motion.fiv3(period) if period else math.nan for period in periods),
+    }
     measures = record_measures()
     if motion.vertical is not None:
         measures += vertical_measures()

@@ -23,20 +23,21 @@ WORDS = {"yes": True, "no": False}
 
 
 def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
-    """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
+    """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:...``, ``cs:...`` or of a file.
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
     """
-    from rockflex.motion._target_files import read_target
+    from rockflex.motion._target_files import read_conditional_spectrum, read_target
     from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum
 
     code, colon, rest = text.partition(":")
-    if not colon or code not in ("ec8", "ec8-2024", "asce7"):
+    if not colon or code not in ("ec8", "ec8-2024", "asce7", "cs"):
         if not Path(text).exists():
             raise InputError(
                 f"--target {shown(text)} is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or "
                 "ec8-2024:s_alpha=0.6g,s_beta=0.2g,site=C, or asce7:sds=1g,sd1=0.6g,tl=8, or "
-                'asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or name a file with the columns "period (s), sa (g)".'
+                "asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or cs:file=model.csv,period=1,epsilon=1.5, "
+                'or name a file with the columns "period (s), sa (g)".'
             )
         return read_target(text, damping_ratio=0.05 if damping is None else damping)
     if damping is not None:
@@ -44,6 +45,9 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
             "--damping is for a target from a file. Write ec8:...,damping=0.02; ASCE 7 has 5 %: leave --damping out."
         )
     items = _target_flag_items(code, rest)
+    if code == "cs":
+        given = _read_target_items(code, items, "file period", "sa epsilon damping")
+        return read_conditional_spectrum(given.pop("file"), **given)
     if code == "ec8":
         return ec8_spectrum(**_read_target_items(code, items, "ag", "ground type importance damping"))
     if code == "ec8-2024":
@@ -122,8 +126,8 @@ def _target_flag_yes_or_no(name: str, text: str) -> bool:
 
 ARGUMENTS = {"type": "kind", "damping": "damping_ratio"}  # of the functions, where they are not the keys
 READERS: dict[str, Callable[[str, str], Any]] = {  # of the keys that are not plain numbers
-    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1"), _target_flag_acceleration),
-    **dict.fromkeys(("ground", "site"), lambda _, text: text),
+    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1", "sa"), _target_flag_acceleration),
+    **dict.fromkeys(("ground", "site", "file"), lambda _, text: text),
     "mce": _target_flag_yes_or_no,
 }
 
@@ -136,6 +140,8 @@ rockflex select folder --target ec8:ag=2.5m/s2,ground=B,type=2,importance=1.2 -n
 
 rockflex select folder --target asce7:sds=1g,sd1=0.6g,tl=8 -n 11 --periods 0.2,2 --measure rotd100 --least 0.9
 
+rockflex select folder --target cs:file=model.csv,period=1,sa=0.5g -n 30 --periods 0.1,3 --limits 0.25,5 --per-event 3
+
 rockflex select folder --target site.csv --count 7 --periods 0.2,2 --records scaled
 
 [bold]Targets[/bold]
@@ -146,6 +152,9 @@ ec8-2024:s_alpha=A,s_beta=A,site=A..D,f_alpha=F,f_beta=F,topography=F,damping=ZE
 sites A to D or with the factors of the site. Only s_alpha and s_beta are needed.
 
 asce7:sds=A,sd1=A,tl=S,mce=yes|no: ASCE 7-16, 11.4.6; or from the maps: asce7:ss=A,s1=A,site=A..E|default,tl=S.
+
+cs:file=PATH,period=S,sa=A,epsilon=E,damping=ZETA: the conditional spectrum of a file with the columns "period (s), \
+median (g), sigma", given sa or epsilon at the period.
 
 A file with the columns "period (s), sa (g)".
 
@@ -175,7 +184,7 @@ def select(
         typer.Argument(metavar="MOTION", help="Suites, records (suite/name), files or directories to choose from."),
     ],
     target: Annotated[
-        str, options.option("--target", "TARGET", "ec8:KEY=VALUE,..., asce7:KEY=VALUE,... or a file; see below.")
+        str, options.option("--target", "TARGET", "ec8:KEY=VALUE,..., asce7:..., cs:... or a file; see below.")
     ],
     count: Annotated[int, options.option("--count -n", "N", "Number of records; of pairs, if combined.")],
     periods: Annotated[
@@ -215,7 +224,7 @@ def select(
     on_error: options.OnError = "raise",
     vertical: options.Vertical = None,
 ) -> None:
-    """Choose the records whose mean spectrum fits a target best, and scale each by one factor."""
+    """Choose the records whose spectra fit a target best, in their mean or their mean and spread, and scale each."""
     from rockflex.cli._find_motions import find_motions
     from rockflex.motion._suite import Suite
 
@@ -253,6 +262,7 @@ def select(
         "records": _selected_record_rows(chosen),
         "motions": [item.describe() for item in found if item.motion.name in chosen.suite],
         "misfit": chosen.misfit,
+        "spread_misfit": chosen.spread_misfit,
         "least_ratio": chosen.least_ratio,
         "zero_period_ratio": chosen.zero_period_ratio,
         "spectra": chosen.spectra().to_dict("list"),
@@ -287,6 +297,8 @@ def _selected_record_rows(chosen: "Selection") -> list[dict[str, Any]]:
 
 
 def _print_selection(chosen: "Selection") -> None:
+    from rockflex.motion._conditional import ConditionalSpectrum
+
     rows = [
         [
             row["record"],
@@ -304,8 +316,16 @@ def _print_selection(chosen: "Selection") -> None:
     target = chosen.target
     lines = [
         f"\nTarget: {target.name}, damping {target.damping_ratio:g}, {chosen.periods[0]:g} to {chosen.periods[-1]:g} s",
-        f"Mean: misfit {console.number(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
     ]
+    if isinstance(target, ConditionalSpectrum):
+        lines.append(
+            f"Median: misfit {console.number(chosen.misfit, 3)}; standard deviation of ln Sa: "
+            f"misfit {console.number(chosen.spread_misfit, 3)}"
+        )
+    else:
+        lines.append(
+            f"Mean: misfit {console.number(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target"
+        )
     if len(chosen.names) > 1:
         spread = chosen.dispersion
         lines.append(f"Standard deviation of ln Sa: {spread.min():.2f} to {spread.max():.2f}")

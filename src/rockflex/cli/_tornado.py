@@ -24,6 +24,7 @@ rockflex tornado structure.toml fema-p695-far-field --parameter period=0.2 --par
 
 rockflex tornado structure.toml fema-p695-far-field --demand max_base_moment --free-vibration settle --json"""
 
+USUAL = 0.1  # relative range
 FLAGS = {"demand": "--demand", "parameters": "--parameter", "free_vibration": "--free-vibration"}
 
 
@@ -95,7 +96,7 @@ def tornado(
     console.print_warnings(prepared.loaded.warnings)
 
 
-def parameter_ranges(given: Sequence[str] | None) -> "dict[str, Range] | None":
+def parameter_ranges(given: Sequence[str] | None) -> "dict[str, Range] | float":
     """Return the ranges that options such as ``period=0.2``, ``damping_ratio=0.5:2`` or ``scale`` give by name.
 
     Raises
@@ -104,12 +105,12 @@ def parameter_ranges(given: Sequence[str] | None) -> "dict[str, Range] | None":
         If a range is no number, or a name was given twice.
     """
     if given is None:
-        return None
+        return USUAL
     found = dict[str, Any]()
     for text in given:
         name, equals, ends = (part.strip() for part in text.partition("="))
         try:
-            numbers = tuple(map(float, ends.split(":"))) if equals else (0.1,)
+            numbers = tuple(map(float, ends.split(":"))) if equals else (USUAL,)
         except ValueError:
             numbers = ()
         if not 1 <= len(numbers) <= 2:

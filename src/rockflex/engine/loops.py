@@ -1,30 +1,19 @@
-"""The compiled loops of `march.c` as methods; `loops_twin` has the same in NumPy. Declarations: `loops.pxd`."""
-
-import os
+"""The compiled loops of `march.c` as methods. Declarations: `loops.pxd`."""
 
 import cython
 import numpy as np
 from cython.cimports.libc.math import INFINITY
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
+from cython.cimports.rockflex.engine.levels import ASKED, ENDS, LOOPS, MAX_ROWS, UNKNOWN, Climb, Phase, Shaken, Tables
 
-from rockflex.engine import failures, tableau
+from rockflex.engine import levels, tableau
 from rockflex.engine import tables as preparing
-from rockflex.engine.system import LinearPhase, up8
+from rockflex.engine.preparation import bounds_of, tables_of_phase
+from rockflex.engine.shaken import shaken_of
+from rockflex.engine.system import up8
 
-LEVELS = ("", "baseline", "v3", "v4")
-
-
-def chosen_level():
-    """Return the level asked for by the environment variable ROCKFLEX_SIMD; empty for the best one."""
-    asked = os.environ.get("ROCKFLEX_SIMD", "")
-    if asked not in LEVELS or rockflex_loops(asked.encode()) == cython.NULL:
-        raise failures.missing_vector_level_error(asked)
-    return asked.encode()
-
-
-LOOPS = cython.declare(cython.pointer(cython.const[Loops]), rockflex_loops(chosen_level()))
-LEVEL, GROUP = LOOPS.level.decode(), LOOPS.group
+LEVEL, GROUP = levels.LEVEL, levels.GROUP
 
 NODES = cython.declare(cython.double[::1], tableau.C)
 WEIGHTS = cython.declare(cython.double[:, ::1], tableau.SUMS)
@@ -177,9 +166,7 @@ class Phases:
         count: cython.int = len(events)
         systems = len(found.C)
         outcomes, jumps, rests, more = preparing.parts_of_events(events, systems, GROUP)
-        shape: Shape
-        shape.h = h
-        content, offsets, halvings = tables_of_phase(found, cython.address(shape), more)
+        content, offsets, halvings, shape = tables_of_phase(found, h, more)
         if place == self.count:
             self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
             self.contents.append(None)
@@ -189,8 +176,8 @@ class Phases:
                 self.known = np.concatenate((self.known, np.zeros(place, dtype=np.intc)))
             self.count += 1
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, shape.outputs, shape.rows
-        phase.tables.shift, phase.tables.parts, phase.tables.h = shape.shift, shape.parts, h
+        phase.tables.n, phase.tables.outputs, phase.tables.h = self.n, len(found.d[0]), h
+        phase.tables.rows, phase.tables.shift, phase.tables.parts, phase.tables.capped = shape
         phase.tables.shaken.now = cython.NULL
         phase.events = count
         phase.jump = cython.cast(
@@ -217,11 +204,12 @@ class Phases:
         self.known[place] = 1
         return content.nbytes
 
-    def set_vertical_tables(self, place: cython.int, which, shaken):
-        """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none.
+    def shake(self, place: cython.int, which, found, h):
+        """Prepare what a phase has under vertical acceleration, and point to what one system has.
 
         Returns its memory in bytes.
         """
+        shaken = shaken_of(found, h, bounds_of)
         self.known[place] = 2
         if shaken is None:
             return 0
@@ -320,10 +308,6 @@ class Phases:
     def halvings(self, place):
         """How often the step must be halved so that power series converge."""
         return self.phases[place].halvings
-
-    def parts(self, place):
-        """Number of parts of y', whose magnitudes bound the rows."""
-        return self.phases[place].tables.parts
 
     def shift(self, place, v):
         """Number of first states whose rates are as many states after them."""
@@ -524,76 +508,3 @@ def climb(v: tuple[cython.double, cython.double]) -> Climb:
     found: Climb
     found.start, found.rise = v[0], v[1]
     return found
-
-
-@cython.cfunc
-def tables_of_phase(found, shape: cython.pointer(Shape), more):
-    """The tables of a stack of phases, each system's in a row, and more parts; their places; the halvings."""
-    if not isinstance(found, LinearPhase):
-        known = preparing.tables_of_nonlinear_phase(found)
-        shape.n, shape.outputs, shape.rows, shape.shift = found.C.shape[2], known.outputs, known.rows, known.shift
-        shape.parts = 0
-        return *preparing.laid(known[4:], GROUP, more), known.halvings
-    rates, rows = preparing.rates_and_rows(found)
-    shape.n, shape.outputs, shape.rows = rates.shape[1], found.d.shape[1], rows.shape[1]
-    shape.shift = preparing.shift_of(rates)
-    return prepared(rates, rows, shape, more)
-
-
-@cython.cfunc
-def prepared(
-    rates: cython.const[cython.double][:, :, ::1],
-    rows: cython.const[cython.double][:, :, ::1],
-    shape: cython.pointer(Shape),
-    more,
-):
-    """The tables of a stack of linear phases, from [A f c] and the rows [C d e]."""
-    systems: cython.int = rates.shape[0]
-    n: cython.int = shape.n
-    k: cython.int
-    most: cython.int = 0
-    place: cython.Py_ssize_t
-    first: cython.p_double
-    here: cython.p_double
-    given: cython.p_const_double = cython.address(rates[0, 0, 0])
-    seen: cython.p_const_double = cython.address(rows[0, 0, 0]) if rows.shape[1] else given
-    wide: cython.Py_ssize_t = n * (n + 2)
-    tall: cython.Py_ssize_t = shape.rows * (n + 2)
-    of_modes: cython.Py_ssize_t = n * (2 + 4 * n)
-    shape.parts = n
-    memory: cython.double[::1] = np.empty(LOOPS.room(shape))
-    room: cython.p_double = cython.address(memory[0])
-    turns: cython.double[::1] = np.empty(systems)
-    counts: cython.int[::1] = np.zeros(systems, dtype=np.intc)
-    modes: cython.double[::1] = memory
-    for k in range(systems):
-        turns[k] = LOOPS.turn(shape, given + k * wide, room)
-    chosen = np.flatnonzero(np.asarray(turns) > preparing.FAST)
-    if chosen.size:
-        roots: cython.double[:, ::1]
-        vectors: cython.double[:, :, ::1]
-        roots, vectors = preparing.roots_and_vectors(np.asarray(rates)[chosen, :, :n])
-        places_of: cython.Py_ssize_t[::1] = chosen
-        modes = np.empty(systems * of_modes)
-        with cython.nogil:
-            for k in range(places_of.shape[0]):
-                place, first = places_of[k], cython.address(modes[places_of[k] * of_modes])
-                counts[place] = LOOPS.fast_modes(
-                    shape, cython.address(roots[k, 0]), cython.address(vectors[k, 0, 0]), room, first
-                )
-                most = max(most, counts[place])
-        shape.parts += 2 * most
-        memory = np.empty(LOOPS.room(shape))
-        room = cython.address(memory[0])
-    content, offsets = preparing.room_of_tables(systems, n, shape.outputs, shape.rows, shape.shift, shape.parts, more)
-    halvings = np.zeros(systems, dtype=np.intc)
-    found: cython.int[::1] = halvings
-    tables: cython.double[:, ::1] = content
-    places: cython.Py_ssize_t[::1] = offsets
-    with cython.nogil:
-        for k in range(systems):
-            first, here = cython.address(modes[k * of_modes if most else 0]), cython.address(tables[k, 0])
-            found[k] = LOOPS.prepare(
-                shape, given + k * wide, seen + k * tall, counts[k], first, room, cython.address(places[0]), here
-            )
-    return content, offsets, halvings

@@ -360,14 +360,13 @@ static int begin_block(const Tables *p, const double *a, const double *v, int sa
         product(n + 3 + p->shaken.fed, up8(parts), p->shaken.moves, shaken_term(p, climb, 0, 0, x, more), found);
     else
         product(n + 2, up8(parts), p->moves, x, found);
-    for (int k = 0; k < n; k++) w->moves[k] = fabs(found[k]);
-    for (int k = n; k < parts; k++) w->moves[k + 2] = fabs(found[k]);
-    vary(a, samples, p->h, w->moves + n);
+    for (int k = 0, first = w->shakes ? shaken_columns(p) - parts : 2; k < parts; k++) w->moves[first + k] = fabs(found[k]);
+    vary(a, samples, p->h, w->moves);
     int length = BLOCK;
     if (w->shakes) {
         if (!vary_shaken(p, v, samples, y, w->moves)) {
             length = AHEAD, samples = samples < AHEAD ? samples : AHEAD;
-            vary(a, samples, p->h, w->moves + n);
+            vary(a, samples, p->h, w->moves);
             vary_shaken(p, v, samples, y, w->moves);
         }
         product(shaken_columns(p), up8(rows), p->shaken.bend, w->moves, w->bend);
@@ -376,7 +375,8 @@ static int begin_block(const Tables *p, const double *a, const double *v, int sa
     }
     for (int j = 0; j < rows; j += LANES) /* products of vague bounds may not be numbers */
         put(w->bend + j, chosen(at(w->bend + j) < all(1e300), at(w->bend + j), all(1e300)));
-    if (parts > n) product(parts + 2, up8(rows), p->cap, w->moves, w->cap);
+    if (p->capped && !w->shakes) product(parts + 2, up8(rows), p->cap, w->moves, w->cap);
+    else memset(w->cap, 0, sizeof *w->cap * rows);
     w->fine = 0;
     set_calm(rows, w);
     return length;
@@ -436,7 +436,7 @@ static void ends_of(const Tables *p, const double *table, int row, const double 
    stays near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
 static void examine(const Tables *p, const double *ground, const double *rise, int samples, const double *x, const double *before,
                     const double *after, Watch *w, Asking *found) {
-    const int parted = !w->shakes && p->parts > p->n; /* otherwise the amplitudes of fast modes are not known */
+    const int parted = p->capped && !w->shakes;
     unsigned left = (1u << samples) - 1; /* samples before the first in which a condition may fail */
     found->at_end = found->within = found->fails = found->count = 0;
     for (int k = 0; k < p->rows && left; k++) {
@@ -464,7 +464,7 @@ static void examine(const Tables *p, const double *ground, const double *rise, i
             ends_of(p, p->slope, j, x, &s0, &s1);
         const quad closer = quad_absolute(s1 - s0) * (p->h / 8.0) + w->sway[j];
         beyond = quad_chosen(closer < beyond, closer, beyond), low -= beyond, high += beyond;
-        if (parted) {
+        if (parted && w->cap[j] > 0.0) {
             quad c0, c1, away = 0.5 * cap + bend;
             ends_of(p, p->centre, j, x, &c0, &c1);
             low = quad_larger(low, -quad_larger(-c0, -c1) - away), high = -quad_larger(-high, -quad_larger(c0, c1) - away);
@@ -559,7 +559,6 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     set_limits(p, log, w);
     for (int j = 0; j < rows; j++) {
         quad_put(before + AHEAD * j, quad_all(log->seen[j]));
-        w->cap[j] = 0.0;
         if (j >= p->outputs) w->low[j] = 1e-300, w->high[j] = INFINITY;
     }
     log->looks = log->resumes = 0;
@@ -628,4 +627,4 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
 
 const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, move, spread,
                                             reach, complete, magnitudes, advance, march, attempt, look, within, bend,
-                                            room, turn, fast_modes, prepare};
+                                            room, turn, modes_of, amplitudes, bound, prepare};

@@ -34,8 +34,8 @@ typedef struct { /* what a phase has under vertical acceleration; columns y, a, 
     const double *slope;   /* columns as all, and then p': rates of the rows, without the parts of a' and a_v' */
     const double *direct;  /* of every row, the factor of a_v */
     const double *moves;   /* as of Tables */
-    const double *bend, *sway, *jolt; /* as of Tables; more columns: variation of a_v, |a_v'|, and of all p their
-                                         variations, |p'|, |p''|, |p'''| and |p''''| */
+    const double *bend, *sway, *jolt; /* as of Tables, with more columns before the parts: variation of a_v, |a_v'|, of
+                                         each p its variation and |p'|, of all |p''|, |p'''| and |p''''| */
     const double *loop;    /* columns: variations of p, which add so much to |y'| of those states */
     const double *swell[4]; /* the same columns as `bend`: |y'|, |y''|, |y'''| and |y''''| of those states */
 } Shaken;
@@ -48,18 +48,19 @@ typedef struct {
     int n, outputs, rows; /* states, outputs, outputs and conditions */
     int shift;            /* the first states, whose rates are as many states after them: y'[i] = y[shift + i] */
     int parts;            /* of y', whose magnitudes bound the rows */
+    int capped;           /* whether modes are so fast that there are `cap` and `centre` */
     double h;
     const double *block;     /* columns y, a0, a1 .., 1: each row after all of the next samples, then change of the states */
     const double *step;      /* columns y, a0, a1, 1: change of the states in one sample */
-    const double *moves;     /* columns y, a, 1: parts of y', those of slow modes and amplitudes of fast ones */
+    const double *moves;     /* columns y, a, 1: parts of y', amplitudes of modes and what is not parted into them */
     const double *now;       /* columns y, a, 1: rates of the other states, or as `border` says; conditions */
     const double *outs;      /* the same columns: outputs */
     const double *slope;     /* the same columns, 8 rows for each row: its rates at these samples, without the part of a' */
-    const double *bend;      /* columns: n parts, variation of a, largest |a'|, other parts: h²/8 |r''| in a block */
+    const double *bend;      /* columns: variation of a, largest |a'|, parts of y': h²/8 |r''| in a block */
     const double *cap;       /* the same columns: distance from the chord due to fast modes */
     const double *centre;    /* as `slope`: what the rows swing about at these samples, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
-    const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''|, not less than 1e300 if there are fast modes */
+    const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''| */
     const double *direct;    /* of every row, the factor of a */
     const double *magnitude; /* |now| */
     const double *most;      /* |outs| */
@@ -118,7 +119,9 @@ typedef struct { /* a step of a phase that is not linear */
 typedef void (*Rates)(void *field, const double *y, double a, double a_v, double *out, int counted);
 
 typedef struct { /* a phase of which tables are to be made; of `Tables`, and the step */
-    int n, outputs, rows, shift, parts;
+    int n, outputs, rows, shift, parts, capped;
+    int slow;   /* first parts of y' that are what is not parted into modes, an even number; 0 if there is nothing */
+    int inputs; /* a; and with a_v that, and its products with states */
     double h;
 } Shape;
 
@@ -142,8 +145,11 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*within)(const Phase *p, const Step *s, int stage);
     void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series);
     size_t (*room)(const Shape *s); /* doubles */
-    double (*turn)(const Shape *s, const double *rates, double *memory);
-    int (*fast_modes)(const Shape *s, const double *roots, const double *vectors, double *memory, double *modes);
+    double (*turn)(const Shape *s, const double *A, double *memory);
+    int (*modes_of)(const Shape *s, const double *A, const double *roots, const double *vectors, double *memory, double *modes);
+    int (*amplitudes)(int n, const double *modes, int count);
+    void (*bound)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
+                  double *moves, double *to);
     int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
                    const ptrdiff_t *places, double *to);
 } Loops;

@@ -13,7 +13,7 @@ if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.libc.math import atan, cos, exp, fabs, hypot, sin, sqrt
 else:
-    from rockflex.engine.loops_twin import PyErr_CheckSignals
+    from rockflex.engine.loops import PyErr_CheckSignals
 
 PI = cython.declare(cython.double, pi)
 ENDLESS = cython.declare(cython.double, np.inf)
@@ -56,6 +56,46 @@ def peaks(acceleration, h, frequencies, zeta):
             oscillator.tune(omegas[i])
             oscillator.peaks(a, motion)
             out[i, 0], out[i, 1] = oscillator.sd, oscillator.sv
+    return found
+
+
+def states(acceleration, h, frequency, zeta, shift):
+    """The states (u, u') at every sample but the last one, and the same time after each.
+
+    Parameters
+    ----------
+    acceleration, h, zeta
+        As in `peaks`.
+    frequency : float
+        Circular frequency ω > 0 in rad/s.
+    shift : float
+        Time in s after the samples, 0 < shift <= h.
+
+    Returns
+    -------
+    ndarray, shape (4, n - 1)
+        In m and m/s: u and u' at the samples, and after them.
+    """
+    a: cython.double[::1] = np.array(acceleration, dtype=float)
+    found = np.empty((4, max(a.shape[0] - 1, 0)))
+    out: cython.double[:, ::1] = found
+    motion: cython.double[:, ::1] = np.empty((2, a.shape[0]))
+    oscillator: Oscillator = Oscillator(h, zeta)
+    impulse: cython.double
+    step: cython.double
+    ramp: cython.double
+    slope: cython.double
+    k: cython.Py_ssize_t
+    oscillator.tune(frequency)
+    impulse, step, ramp = oscillator.responses(shift)
+    with cython.nogil:
+        oscillator.march(a, motion[0], motion[1])
+        for k in range(a.shape[0] - 1):
+            slope = (a[k + 1] - a[k]) / oscillator.h
+            out[0, k], out[1, k] = motion[0, k], motion[1, k]
+            out[2, k], out[3, k] = oscillator.moved(impulse, step, ramp, out[0, k], out[1, k], a[k], slope)
+            if k % PIECE == 0:
+                oscillator.check_stop_request(PIECE)
     return found
 
 
@@ -178,11 +218,29 @@ class Oscillator:
         impulse: cython.double
         step: cython.double
         ramp: cython.double
-        force: cython.double = a + self.square * u
         impulse, step, ramp = self.responses(t)
-        u += impulse * v - step * force - ramp * slope
-        v -= impulse * (force + self.drag * v) + step * (self.square * v + slope)
+        u, v = self.moved(impulse, step, ramp, u, v, a, slope)
         return u, v, self.acceleration(u, v, a + slope * t)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def moved(
+        self,
+        impulse: cython.double,
+        step: cython.double,
+        ramp: cython.double,
+        u: cython.double,
+        v: cython.double,
+        a: cython.double,
+        slope: cython.double,
+    ) -> tuple[cython.double, cython.double]:
+        """Displacement and velocity after (u, v), under a + slope t, by the responses at that time."""
+        force: cython.double = a + self.square * u
+        return (
+            u + (impulse * v - step * force - ramp * slope),
+            v - (impulse * (force + self.drag * v) + step * (self.square * v + slope)),
+        )
 
     @cython.cfunc
     @cython.nogil

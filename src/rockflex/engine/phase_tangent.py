@@ -1,15 +1,17 @@
-"""The derivatives of a phase with respect to parameters: of its matrices, its conditions and its jumps."""
+"""The derivatives of phases with respect to parameters, from the same phases of systems with other numbers."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from rockflex.engine.field import Jump
 from rockflex.engine.system import VERTICAL, Event, Key, LinearPhase
-from rockflex.foundation.arrays import Array
+from rockflex.engine.tables import rates_of, rows_of, spectral_radius_bound
+from rockflex.engine.tangent_pass import Crossing
+from rockflex.engine.tangent_steps import Motion
+from rockflex.foundation.arrays import Array, Integers
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 
@@ -17,91 +19,98 @@ CENTRAL = {-3: -1 / 60, -2: 9 / 60, -1: -45 / 60, 1: 45 / 60, 2: -9 / 60, 3: 1 /
 ONE_SIDED = {0: -147 / 60, 1: 360 / 60, 2: -450 / 60, 3: 400 / 60, 4: -225 / 60, 5: 72 / 60, 6: -10 / 60}
 """Weights of values at so many steps of a parameter, whose sum over the step is the derivative, to the sixth order."""
 NEAR = 1e-5  # of the size of a state: a step for the slopes of a jump
+SMALL = 0.125  # rad of the fastest motion in the smallest step
+LEFT_OUT = 1e-18  # of a series of an exponential, beyond which
+SPARE = 3  # terms more are summed
+FOR_EVER = 26  # doublings of that step: a decay
 
 
-@dataclass(frozen=True, eq=False)
-class PhaseTangent:
-    """The derivatives of a phase with respect to P parameters: its arrays with a first axis more.
+class PhaseNumbers(NamedTuple):
+    """The numbers of a phase of S systems.
 
-    `jumped` returns the derivative of the state after an event, by the number of the event, for a given state before it
-    and both accelerations, shape (P, n); `target` is the key that then follows.
+    Parameters
+    ----------
+    rates, rows
+        [A f c], shape (S, n, n + 2); of outputs and then of conditions [C d e], (S, m + e, n + 2).
+    rates_v, rows_v
+        The same for the vertical acceleration, without the column of 1: [A_v f_v] and [C_v d_v].
     """
 
-    arrays: Mapping[str, Array]
-    events: Sequence[Mapping[str, Array]]
-    jumped: Callable[[int, Array, float, float, Key | None], Array]
+    rates: Array
+    rows: Array
+    rates_v: Array
+    rows_v: Array
 
-    def __getitem__(self, name: str) -> Array:
-        return self.arrays[name]
+    def at(self, places: Integers) -> "PhaseNumbers":
+        """Those of some systems."""
+        return PhaseNumbers(*(each[places] for each in self))
 
-
-NUMBERS = ("A", "f", "c", "C", "d", "e", *VERTICAL)
-OF_EVENTS = ("row", "constant", "direct", "row_v", "direct_v")
-
-
-def scale_tangent(phase: LinearPhase) -> PhaseTangent:
-    """Return the derivatives of a phase with respect to the logarithm of a factor on both accelerations."""
-    takes = {"f", "d", *VERTICAL}
-    arrays = {name: number_of_phase(phase, name) * (name in takes) for name in NUMBERS}
-    of_events = ("direct", "row_v", "direct_v")
-    events = [
-        {name: number_of_event(each, name, phase) * (name in of_events) for name in OF_EVENTS} for each in phase.events
-    ]
-    still = np.zeros((1, len(phase.A)))
-
-    def jumped(number: int, y: Array, a: float, a_v: float, target: Key | None) -> Array:
-        del number, y, a, a_v, target
-        return still
-
-    return PhaseTangent(
-        {name: each[None] for name, each in arrays.items()},
-        [{name: np.asarray(number)[None] for name, number in each.items()} for each in events],
-        jumped,
-    )
+    def by_scale(self) -> "PhaseNumbers":
+        """Their derivatives with respect to the logarithm of a factor on both accelerations."""
+        found = PhaseNumbers(np.zeros_like(self.rates), np.zeros_like(self.rows), self.rates_v, self.rows_v)
+        found.rates[..., -2], found.rows[..., -2] = self.rates[..., -2], self.rows[..., -2]
+        return found
 
 
-def phase_tangent(
-    phase: LinearPhase, phases: Sequence[Mapping[int, LinearPhase]], weights: Sequence[Mapping[int, float]]
-) -> PhaseTangent:
-    """Return the derivatives of a phase, from the phase at a few steps of each parameter and their weights.
+def numbers_of_phase(phase: LinearPhase) -> PhaseNumbers:
+    """Return the numbers of a phase of a stack of systems."""
+    rates, rows = rates_of(phase), rows_of(phase)
+    rates_v, rows_v = np.zeros_like(rates[..., :-1]), np.zeros_like(rows[..., :-1])
+    m = phase.d.shape[1]
+    for name, to in zip(
+        VERTICAL, (rates_v[..., :-1], rates_v[..., -1], rows_v[:, :m, :-1], rows_v[:, :m, -1]), strict=True
+    ):
+        if getattr(phase, name) is not None:
+            to[:] = getattr(phase, name)
+    for row, event in enumerate(phase.events, m):
+        rows_v[:, row, -1] = event.direct_v
+        if event.row_v is not None:
+            rows_v[:, row, :-1] = event.row_v
+    return PhaseNumbers(rates, rows, rates_v, rows_v)
 
-    `jumped` raises an InputError at an event that some of them lack.
+
+class Neighbours(NamedTuple):
+    """A phase of K systems with other numbers, and the weights of P derivatives.
+
+    Parameters
+    ----------
+    phases
+        The phase of stacks of systems.
+    places
+        Of each stack, which of the K systems are in it, and their places there.
+    weights
+        Shape (P, K); those of a parameter sum up to zero.
     """
-    events = [{step: _events_by_name(each) for step, each in some.items()} for some in phases]
 
-    def taken(value: Callable[[int, int], Any]) -> Array:
-        found = list[Array]()
-        for k, each in enumerate(weights):
-            of_steps = {step: np.asarray(value(k, step)) for step in each}
-            first = next(iter(of_steps.values()))  # what a parameter does not change has no derivative, to the bit
-            found.append(np.asarray(sum(weight * (of_steps[step] - first) for step, weight in each.items())))
-        return np.array(found)
+    phases: Sequence[LinearPhase]
+    places: Sequence[tuple[Integers, Integers]]
+    weights: Array
 
-    def jumped(number: int, y: Array, a: float, a_v: float, target: Key | None) -> Array:
-        def after(k: int, step: int) -> Array:
-            if names[number] not in events[k][step]:
-                raise InputError(
-                    f"Near its value a parameter decides whether there is an event {shown(names[number][0])}, which "
-                    "happens in the run: no derivative tells what it does. Change the parameter a little.",
-                    field="parameters",
-                )
-            return state_after(events[k][step][names[number]], y, a, a_v, target)[0]
 
-        return taken(after)
+def slopes_of_numbers(phase: LinearPhase, own: PhaseNumbers, neighbours: Neighbours) -> PhaseNumbers:
+    """Return the derivatives of the numbers of a phase of one system, with a first axis for P parameters.
 
-    def of_event(number: int, name: str) -> Array:
-        def value(k: int, step: int) -> Array:
-            event = events[k][step].get(names[number])
-            like = number_of_event(phase.events[number], name, phase)
-            return np.full_like(like, np.nan) if event is None else number_of_event(event, name, phase)
+    What a parameter does not change has no derivative, to the bit. Conditions that some neighbours lack have NaN.
+    """
+    m, names = phase.d.shape[1], list(_events_by_name(phase))
+    given = PhaseNumbers(*(np.zeros((neighbours.weights.shape[1], *each.shape[1:])) for each in own))
+    for each, (among, where) in zip(neighbours.phases, neighbours.places, strict=True):
+        known = numbers_of_phase(each).at(where)
+        listed = list(_events_by_name(each))
+        if listed != names:
+            rows = [m + listed.index(name) if name in listed else -1 for name in names]
+            order = np.concatenate((np.arange(m, dtype=np.int64), np.array(rows, dtype=np.int64)))
+            lacks = order < 0
+            known = known._replace(rows=known.rows[:, order], rows_v=known.rows_v[:, order])
+            known.rows[:, lacks] = known.rows_v[:, lacks] = np.nan
+        for to, values in zip(given, known, strict=True):
+            to[among] = values
+    return PhaseNumbers(*(_weighed(neighbours.weights, values - base) for values, base in zip(given, own, strict=True)))
 
-        return taken(value)
 
-    names = list(_events_by_name(phase))
-    arrays = {name: taken(lambda k, step, name=name: number_of_phase(phases[k][step], name)) for name in NUMBERS}
-    return PhaseTangent(
-        arrays, [{name: of_event(number, name) for name in OF_EVENTS} for number in range(len(names))], jumped
-    )
+def _weighed(weights: Array, values: Array) -> Array:
+    """Sums of K values with P sets of weights, shape (P, ...)."""
+    return np.asarray(np.tensordot(weights, values, 1), dtype=np.float64)
 
 
 def _events_by_name(phase: LinearPhase) -> dict[tuple[str, Key | None, int], Event]:
@@ -114,56 +123,176 @@ def _events_by_name(phase: LinearPhase) -> dict[tuple[str, Key | None, int], Eve
     return found
 
 
-def joined_tangents(parts: Sequence[PhaseTangent]) -> PhaseTangent:
-    """Return the derivatives of a phase with respect to the parameters of several parts, in their order."""
-    if len(parts) == 1:
-        return parts[0]
-    arrays = {name: np.concatenate([each.arrays[name] for each in parts]) for name in NUMBERS}
-    events = [
-        {name: np.concatenate([each.events[k][name] for each in parts]) for name in OF_EVENTS}
-        for k in range(len(parts[0].events))
-    ]
+def motion_of_phase(
+    phase: LinearPhase, place: int, h: float, neighbours: Neighbours | None, *, free: bool, upward: int
+) -> Motion:
+    """Return a phase with its derivatives by the scale of the record and by parameters, and the tables of its steps.
 
-    def jumped(number: int, y: Array, a: float, a_v: float, target: Key | None) -> Array:
-        return np.concatenate([each.jumped(number, y, a, a_v, target) for each in parts])
+    Parameters
+    ----------
+    phase, place
+        The phase, and which system of its stack.
+    h
+        The time step, s.
+    neighbours
+        Of the parameters, if there are any.
+    free
+        Whether the motion without excitation is followed instead, which needs no derivatives of the tables.
+    upward
+        The longest step that there are tables for is 2^upward samples.
+    """
+    own = numbers_of_phase(phase).at(np.array([place]))
+    slopes = own.by_scale()
+    if neighbours is not None:
+        more = slopes_of_numbers(phase, own, neighbours)
+        slopes = PhaseNumbers(*(np.concatenate(pair) for pair in zip(slopes, more, strict=True)))
+    rates = own.rates[0]
+    speed = _speed(rates)
+    tables, changes, whole = _steps(rates, slopes.rates[:0] if free else slopes.rates, h, speed, upward)
+    scales = np.array([float(np.broadcast_to(event.scale, len(phase.A))[place]) for event in phase.events])
+    return Motion(
+        rates, own.rows[0], own.rates_v[0], own.rows_v[0], *slopes, scales, tables, changes, whole, h, speed
+    )  # fmt: skip
 
-    return PhaseTangent(arrays, events, jumped)
+
+def _speed(rates: Array) -> float:
+    """How fast a motion may turn or grow, 1/s."""
+    A = rates[:, :-2]
+    size = float(np.abs(A).max(initial=0.0))
+    return size * float(spectral_radius_bound(A[None] / size)[0]) if size else 0.0
 
 
-def number_of_phase(phase: LinearPhase, name: str) -> Array:
-    """Return an array of a phase; zero if it is left out."""
-    found = getattr(phase, name)
-    like = {"A_v": "A", "f_v": "f", "C_v": "C", "d_v": "d"}
-    return np.zeros_like(getattr(phase, like[name])) if found is None else found
+def _steps(rates: Array, slopes: Array, h: float, speed: float, upward: int) -> tuple[Array, Array, int]:
+    """Return the changes of [y, a, a', 1] over steps that double, their derivatives, and which of them is a sample.
+
+    Shapes (L, n + 3, n) and (L, n + 3, P, n), column after column.
+    """
+    whole = max(0, int(np.ceil(np.log2(max(speed * h / SMALL, 1e-300)))))
+    with np.errstate(over="ignore", invalid="ignore"):  # steps that a run of finite motion does not take
+        changes, derived = _doubled(rates, slopes, h / 2.0**whole, speed, whole + upward)
+    n = len(rates)
+    return (
+        np.ascontiguousarray(np.array(changes)[:, :n].transpose(0, 2, 1)),
+        np.ascontiguousarray(np.array(derived)[:, :, :n].transpose(0, 3, 1, 2)),
+        whole,
+    )
 
 
-def number_of_event(event: Event, name: str, phase: LinearPhase) -> Array:
-    """Return a number or a row of an event; zero if it is left out."""
-    found = getattr(event, name)
-    return np.zeros(len(phase.A)) if found is None else np.asarray(found, dtype=float)
+def _doubled(rates: Array, slopes: Array, step: float, speed: float, times: int) -> tuple[list[Array], list[Array]]:
+    """Return exp(M t) - 1 and its derivatives for a small step t, and for steps that double so many times.
+
+    M has the rates of [y, a, a', 1]. What is left of exp without 1 keeps the digits of small changes.
+    """
+    n, P = len(rates), len(slopes)
+    M, dM = np.zeros((n + 3, n + 3)), np.zeros((P, n + 3, n + 3))
+    for to, of in ((M, rates), (dM, slopes)):
+        to[..., :n, : n + 1], to[..., :n, -1] = of[..., : n + 1] * step, of[..., -1] * step
+    M[n, n + 1] = step
+    terms, left = 1, speed * step
+    while left > LEFT_OUT:
+        terms += 1
+        left *= speed * step / terms
+    term, more, total, derived = M, dM, M.copy(), dM.copy()
+    for k in range(2, terms + SPARE):
+        term, more = term @ M / k, (more @ M + term @ dM) / k
+        total, derived = total + term, derived + more
+    found, of_found = [total], [derived]
+    for _ in range(times):
+        total, derived = total @ total + 2.0 * total, derived @ total + total @ derived + 2.0 * derived
+        found.append(total)
+        of_found.append(derived)
+    return found, of_found
 
 
-def state_after(event: Event, y: Array, a: float, a_v: float, target: Key | None) -> tuple[Array, int]:
-    """The state after an event that led to a phase, and what a compiled jump said."""
+def brought_to_rest(
+    phase: LinearPhase, place: int, neighbours: Neighbours | None, y: Array, s: Array
+) -> tuple[Array, Array]:
+    """Return the state that a motion without excitation approaches, and its tangents, shapes (n,) and (P, n)."""
+    own = numbers_of_phase(phase).at(np.array([place]))
+    slopes = own.by_scale().rates
+    if neighbours is not None:
+        slopes = np.concatenate((slopes, slopes_of_numbers(phase, own, neighbours).rates))
+    n, speed = len(y), max(_speed(own.rates[0]), 1e-9)
+    changes, derived = _doubled(own.rates[0], slopes, SMALL / speed, speed, FOR_EVER)
+    start = np.concatenate((y, (0.0, 0.0, 1.0)))
+    return y + (changes[-1] @ start)[:n], s + s @ changes[-1][:n, :n].T + (derived[-1] @ start)[:, :n]
+
+
+def crossing_of_event(
+    phase: LinearPhase, place: int, number: int, target: Key | None, neighbours: Neighbours | None
+) -> Crossing:
+    """Return what an event that led to a phase makes of the state, with its derivatives.
+
+    Raises
+    ------
+    InputError
+        If some of the neighbours lack the event.
+    """
+    event, P = phase.events[number], 0 if neighbours is None else len(neighbours.weights)
+    name = list(_events_by_name(phase))[number]
+    others = list[tuple[Integers, Integers, Event, LinearPhase]]()
+    if neighbours is not None:
+        for each, (among, where) in zip(neighbours.phases, neighbours.places, strict=True):
+            found = _events_by_name(each).get(name)
+            if found is None:
+                raise InputError(
+                    f"Near its value a parameter decides whether there is an event {shown(name[0])}, which happens in "
+                    "the run: no derivative tells what it does. Change the parameter a little.",
+                    field="parameters",
+                )
+            others.append((among, where, found, each))
+    if not _is_function(event):
+        own, slopes = _matrix_of(event, target), None
+        if own is not None and neighbours is not None:
+            given = np.zeros((neighbours.weights.shape[1], *own.shape[1:]))
+            for among, where, found, each in others:
+                matrix = _matrix_of(found, target)
+                given[among] = (
+                    np.eye(own.shape[1])
+                    if matrix is None
+                    else np.broadcast_to(matrix, (len(each.A), *own.shape[1:]))[where]
+                )
+            changed = _weighed(neighbours.weights, given - own[place])
+            slopes = np.concatenate((np.zeros((1, *own.shape[1:])), changed))
+        return Crossing(None if own is None else own[place], slopes)
+    alone = [(found, int(k)) for among, _, found, _ in others for k in among]  # a function is of one system
+
+    def ask(y: Array, a: float, a_v: float) -> tuple[Array, Array]:
+        moved = np.zeros((1 + P, len(y)))
+        if neighbours is not None:
+            first = state_after(event, y, a, a_v, target)
+            for found, k in alone:
+                moved[1:] += np.outer(neighbours.weights[:, k], state_after(found, y, a, a_v, target) - first)
+        return slopes_of_jump(event, y, a, a_v, target), moved
+
+    return Crossing(ask=ask)
+
+
+def _is_function(event: Event) -> bool:
+    return callable(event.jump) or isinstance(event.jump, Jump)
+
+
+def _matrix_of(event: Event, target: Key | None) -> Array | None:
+    """The matrices, (S, n, n), by which states are multiplied at an event that led to a phase; None if by none."""
+    jump, rest = event.jump, event.rest
+    assert jump is None or isinstance(jump, np.ndarray)
+    if rest is None or target != rest.target or target == event.target or rest.jump is None:
+        return jump
+    return rest.jump if jump is None else rest.jump @ jump
+
+
+def state_after(event: Event, y: Array, a: float, a_v: float, target: Key | None) -> Array:
+    """Return the state after an event, whose jump is a function, that led to a phase."""
+    del target
     if isinstance(event.jump, Jump):
         found = y.copy()
-        return found, event.jump.apply_at(found, a, a_v)
-    if callable(event.jump):
-        return event.apply_jump(y, a, a_v)[0], 0
-    rest = event.rest
-    found = y if event.jump is None else event.jump @ y
-    if rest is not None and target == rest.target and target != event.target and rest.jump is not None:
-        found = rest.jump @ found
-    return found, 0
+        event.jump.apply_at(found, a, a_v)
+        return found
+    return event.apply_jump(y, a, a_v)[0]
 
 
 def slopes_of_jump(event: Event, y: Array, a: float, a_v: float, target: Key | None) -> Array:
-    """The derivatives of the state after an event with respect to the one before it, shape (n, n)."""
-    if not callable(event.jump) and not isinstance(event.jump, Jump):
-        found = np.eye(len(y)) if event.jump is None else event.jump
-        rest = event.rest
-        chosen = rest is not None and target == rest.target and target != event.target and rest.jump is not None
-        return rest.jump @ found if chosen and rest is not None and rest.jump is not None else found
+    """Return the derivatives of that with respect to the state before it, by differences, shape (n, n)."""
     sizes = NEAR * np.maximum(np.abs(y), np.abs(y).max(initial=0.0) * 1e-6)
     columns = np.zeros((len(y), len(y)))
     for place, size in enumerate(sizes):
@@ -172,6 +301,6 @@ def slopes_of_jump(event: Event, y: Array, a: float, a_v: float, target: Key | N
             for way in (1.0, -1.0):
                 moved = y.copy()
                 moved[place] += way * size
-                ends.append((moved[place], state_after(event, moved, a, a_v, target)[0]))
+                ends.append((moved[place], state_after(event, moved, a, a_v, target)))
             columns[:, place] = (ends[0][1] - ends[1][1]) / (ends[0][0] - ends[1][0])
     return columns

@@ -3,7 +3,7 @@
    A matrix here has its rows `w` doubles apart, and zeros below and beside it, to multiples of 4 and of 8. */
 
 enum { FINEST = 8, FEWEST = 10, MOST_TERMS = 60, WAYS = 2 * BLOCK }; /* as in `tables.py`; places of the grid of h/2 */
-static const double LONGEST = 2.5, FAST = 3.0, POOR = 1e6, SMALL = 1e-18, VAGUE = 1e300;
+static const double LONGEST = 2.5, FAST = 4.0, POOR = 1e4, SMALL = 1e-18, VAGUE = 1e300;
 
 typedef struct { /* room for the tables of one system: square matrices, and larger ones */
     int n, w;
@@ -13,7 +13,8 @@ typedef struct { /* room for the tables of one system: square matrices, and larg
 } Room;
 
 static Room room_for(const Shape *s, double *memory) {
-    Room r = {.n = s->n, .w = up8(s->parts > s->n + AHEAD ? s->parts + 2 : s->n + AHEAD + 2)};
+    const int bounds = 2 * s->inputs + s->parts;
+    Room r = {.n = s->n, .w = up8(bounds > s->n + AHEAD + 2 ? bounds : s->n + AHEAD + 2)};
     const size_t square = (size_t)r.w * up8(s->n + 3);
     const size_t large = (size_t)r.w * (up8(8 * s->rows) + up8(s->n) + up8(s->parts) + 8);
     double **squares[] = {&r.G, &r.X, &r.term, &r.next, &r.slow, &r.step, &r.grown, &r.rates, r.push, r.push + 1};
@@ -135,19 +136,35 @@ static void set_rows(int rows, int columns, int w, const double *from, double *t
 }
 
 /* How far a mode of a phase turns within a step, at most, in rad. */
-static double turn(const Shape *s, const double *rates, double *memory) {
+static double turn(const Shape *s, const double *A, double *memory) {
     Room r = room_for(s, memory);
     memset(r.G, 0, sizeof *memory * (size_t)r.w * up8(s->n + 3));
-    set_rows(s->n, s->n + 2, r.w, rates, r.G);
-    for (int i = 0; i < s->n; i++) r.G[i * r.w + s->n] = r.G[i * r.w + s->n + 1] = 0.0;
+    set_rows(s->n, s->n, r.w, A, r.G);
     scale(s->n, r.w, s->h, r.G, r.G);
     return spectral_radius_bound(&r, r.G);
 }
 
-/* The modes that turn by more than FAST in a step: roots, columns V and rows W of each, real and imaginary parts apart, in
-   `modes`. Given are all roots, real parts and then imaginary ones, and all vectors, the real and the imaginary part in place
-   of two that are conjugate. Returns their number; 0 if they cannot be parted from the others. */
-static int fast_modes(const Shape *s, const double *roots, const double *vectors, double *memory, double *modes) {
+typedef struct { /* of a root; columns and rows V and W, real and imaginary parts apart; two that are conjugate count as one */
+    double re, im, root, both;
+    const double *v, *vi, *u, *ui;
+} Mode;
+
+static Mode mode_at(int n, const double *modes, int k) {
+    const double *m = modes + (size_t)k * (2 + 4 * n);
+    return (Mode){m[0], m[1], hypot(m[0], m[1]), m[1] > 0.0 ? 2.0 : 1.0, m + 2, m + 2 + n, m + 2 + 2 * n, m + 2 + 3 * n};
+}
+
+/* Columns of the amplitudes of so many modes: two where they are complex. */
+static int amplitudes(int n, const double *modes, int count) {
+    int found = count;
+    for (int k = 0; k < count; k++) found += mode_at(n, modes, k).im > 0.0;
+    return found;
+}
+
+/* The modes that can be parted from the others to rounding, in `modes`. Given are all roots, real parts and then imaginary
+   ones, and all vectors, the real and the imaginary part in place of two that are conjugate. Returns their number. */
+static int modes_of(const Shape *s, const double *A, const double *roots, const double *vectors, double *memory,
+                    double *modes) {
     const Room r = room_for(s, memory);
     const int n = s->n, w = r.w;
     const double *real = roots, *imaginary = roots + n;
@@ -156,9 +173,9 @@ static int fast_modes(const Shape *s, const double *roots, const double *vectors
     set_rows(n, n, w, vectors, inverse);
     if (!invert(n, w, inverse)) return 0;
     for (int k = 0; k < n; k++) {
-        if (imaginary[k] < 0.0 || !(hypot(real[k], imaginary[k]) * s->h > FAST)) continue;
+        if (imaginary[k] < 0.0) continue;
         const int pair = imaginary[k] > 0.0;
-        double *mode = modes + (size_t)count++ * (2 + 4 * n), sum = 0.0;
+        double *mode = modes + (size_t)count * (2 + 4 * n), sum = 0.0, most = 0.0, wrong = 0.0;
         mode[0] = real[k], mode[1] = imaginary[k], mode += 2;
         for (int i = 0; i < n; i++) {
             mode[i] = vectors[i * n + k], mode[n + i] = pair ? vectors[i * n + k + 1] : 0.0;
@@ -166,7 +183,16 @@ static int fast_modes(const Shape *s, const double *roots, const double *vectors
             mode[3 * n + i] = pair ? -0.5 * inverse[(k + 1) * w + i] : 0.0;
             sum += hypot(mode[i], mode[n + i]) * hypot(mode[2 * n + i], mode[3 * n + i]);
         }
-        if (!(sum < POOR)) return 0;
+        for (int j = 0; j < n; j++) { /* where others are nearly alike, the rows of the inverse may be wrong */
+            const double *u = mode + 2 * n, *ui = u + n;
+            double left = imaginary[k] * ui[j] - real[k] * u[j], other = -real[k] * ui[j] - imaginary[k] * u[j], all = 0.0;
+            for (int i = 0; i < n; i++) {
+                const double entry = A[i * n + j];
+                left += u[i] * entry, other += ui[i] * entry, all += hypot(u[i], ui[i]) * fabs(entry);
+            }
+            wrong = fmax(wrong, hypot(left, other)), most = fmax(most, all);
+        }
+        count += sum < POOR && wrong <= 1e-11 * most;
     }
     return count;
 }
@@ -227,83 +253,185 @@ static void rows_later(const Room *r, int rows, const double *from, int samples,
     }
 }
 
-/* Part fast modes from y': the matrices of the slow ones, moves, caps and what fast ones swing about; see `tables.Split`. */
-static void part(const Shape *s, const Room *r, int count, const double *modes, double *driven, double *moves, double *cap) {
-    const int n = s->n, w = r->w, R = s->rows;
-    double *swing = r->here;
-    memset(swing, 0, sizeof *swing * up8(R) * w);
-    for (int k = 0; k < count; k++, modes += 2 + 4 * n) {
-        const double re = modes[0], im = modes[1], root = hypot(re, im), both = im > 0.0 ? 2.0 : 1.0, h = s->h;
-        const double *v = modes + 2, *vi = v + n, *u = vi + n, *ui = u + n, fades = re < 0.0 ? -re : 0.0;
-        double drive[2] = {0.0, 0.0};
-        for (int i = 0; i < n; i++) {
-            const double turned = re * v[i] - im * vi[i], other = re * vi[i] + im * v[i];
+/* The column of an input in `rates`: a, a_v, and a_v times each state that it multiplies. */
+static int column_of(const Room *r, int input) { return r->n + (input ? input + 1 : 0); }
+
+/* Part modes from y', so that y' = v + Σ V w, v' = A_s v + f_s a', w' = λ w + W f a': A_s, f_s for each input, what v and all
+   w are made of, and what fast modes add to every row beside what changes linearly in a sample, all from y'. */
+static void part(const Shape *s, const Room *r, int count, const double *modes, double *driven, double *moves, double *swing) {
+    const int n = s->n, w = r->w;
+    const int some = amplitudes(n, modes, count) < n; /* is not parted; what is left otherwise is rounding */
+    int place = s->slow;
+    for (int i = 0; i < n && some; i++) {
+        memcpy(r->slow + i * w, r->rates + i * w, sizeof *moves * n);
+        moves[i * w + i] = 1.0;
+    }
+    for (int k = 0; k < count; k++) {
+        const Mode m = mode_at(n, modes, k);
+        for (int i = 0; i < n && some; i++) {
+            const double turned = m.re * m.v[i] - m.im * m.vi[i], other = m.re * m.vi[i] + m.im * m.v[i];
             for (int j = 0; j < n; j++) {
-                moves[i * w + j] -= both * (v[i] * u[j] - vi[i] * ui[j]);
-                r->slow[i * w + j] -= both * (turned * u[j] - other * ui[j]);
+                moves[i * w + j] -= m.both * (m.v[i] * m.u[j] - m.vi[i] * m.ui[j]);
+                r->slow[i * w + j] -= m.both * (turned * m.u[j] - other * m.ui[j]);
             }
-            moves[(n + k) * w + i] = u[i], moves[(n + count + k) * w + i] = ui[i];
-            drive[0] += u[i] * r->rates[i * w + n], drive[1] += ui[i] * r->rates[i * w + n];
         }
-        const double push = hypot(drive[0], drive[1]), steady = push / (fades > 1e-300 ? fades : 1e-300);
-        const int soon = fades * BLOCK * h > 1.0;
-        for (int j = 0; j < R; j++) {
+        memcpy(moves + place++ * w, m.u, sizeof *moves * n);
+        if (m.im > 0.0) memcpy(moves + place++ * w, m.ui, sizeof *moves * n);
+        for (int j = 0; j < s->rows && swing && m.root * s->h > FAST; j++) {
+            const double *row = r->rows + j * w, share = m.both / (m.root * m.root);
             double seen[2] = {0.0, 0.0};
-            for (int i = 0; i < n; i++) seen[0] += r->rows[j * w + i] * v[i], seen[1] += r->rows[j * w + i] * vi[i];
-            const double size = both * hypot(seen[0], seen[1]) * exp((re > 0.0 ? re : 0.0) * BLOCK * h);
-            const double most[2] = {2.0 * size / root, size * root * root * (h * h * h / 96.0)};
-            for (int q = 0; q < 2; q++) {
-                double *row = (q ? r->sway : cap) + j * w;
-                row[n] += soon ? 0.0 : most[q] * push, row[n + 1] += soon ? most[q] * steady : 0.0;
-                row[n + 2 + k] = row[n + 2 + count + k] = most[q];
-            }
-            r->sway[j * w + n + 1] += most[1] / root * push;
-            const double share = both / (root * root);
-            const double x = share * (seen[0] * re + seen[1] * im), z = share * (seen[1] * re - seen[0] * im);
-            for (int i = 0; i < n; i++) swing[j * w + i] += x * u[i] - z * ui[i];
+            for (int i = 0; i < n; i++) seen[0] += row[i] * m.v[i], seen[1] += row[i] * m.vi[i];
+            const double x = share * (seen[0] * m.re + seen[1] * m.im), z = share * (seen[1] * m.re - seen[0] * m.im);
+            for (int i = 0; i < n; i++) swing[j * w + i] += x * m.u[i] - z * m.ui[i];
         }
     }
-    for (int i = 0; i < n; i++) {
-        driven[i] = 0.0;
-        for (int j = 0; j < n; j++) driven[i] += moves[i * w + j] * r->rates[j * w + n];
-    }
-    multiply(R, n, n + 2, w, swing, r->rates, r->after);
-    for (int i = 0; i < R * w; i++) r->centre[i] -= r->after[i];
+    for (int q = 0; q < s->inputs; q++)
+        for (int i = 0; i < n && some; i++) {
+            double sum = 0.0;
+            for (int j = 0; j < n; j++) sum += moves[i * w + j] * r->rates[j * w + column_of(r, q)];
+            driven[q * n + i] = sum;
+        }
 }
 
-/* Factors of |y'|, of the variation of a and of |a'| in bounds of the rows' derivatives, in `after`: h²/8 |r''| of all
-   rows, h³/96 |r'''| of all, and h⁴/384 |r''''| of the conditions; see `tables.derivative_bound_factors`. */
-static void bound_derivatives(const Shape *s, const Room *r, const double *driven, int fine) {
-    const int n = s->n, w = r->w, m = s->outputs, R = s->rows, count = 3 * R - m, all = up8(count) * w;
-    double *here = r->here, *most = r->most, *after = r->after, *direct = r->found;
-    const double *rows[] = {r->rows, here, here + (R + m) * w}, h = s->h;
-    for (int k = 0; k < 3; k++) {
-        const int some = k < 2 ? R : R - m;
-        multiply(some, n, n, w, rows[k], r->slow, here + k * R * w);
-        for (int i = 0; i < some; i++) {
-            double sum = 0.0;
-            for (int j = 0; j < n; j++) sum += rows[k][i * w + j] * driven[j];
-            direct[k * R + i] = fabs(sum);
-        }
+typedef struct { /* the bounds of one order of derivatives: of the rows from the first one on, in `after` from `place` on */
+    int order, first, count, place;
+    double factor;
+} Bound;
+
+/* Of h²/8 |r''| and h³/96 |r'''| of all rows, of h⁴/384 |r''''| of conditions, and of |r'| of the states that a_v multiplies,
+   which are the last rows. Returns the number of all. */
+static int bounds_of(const Shape *s, Bound *b) {
+    const int R = s->rows, m = s->outputs, fed = s->inputs > 1 ? s->inputs - 2 : 0;
+    const double h = s->h;
+    b[0] = (Bound){2, 0, R, 0, h * h / 8.0}, b[1] = (Bound){3, 0, R, R, h * h * h / 96.0};
+    b[2] = (Bound){4, m, R - m, 2 * R, h * h * h * h / 384.0}, b[3] = (Bound){1, R - fed, fed, 3 * R - m, 1.0};
+    return 3 * R - m + fed;
+}
+
+/* The factors of inputs and of |v| in these bounds. With r'' = C A v + C f a', r''' = C A² v + C A f a' and so on, they are
+   at most |C A e^{At}| |v(0)| and so on; between the places of a grid of h/2 the matrices grow at most by `bound_growth`,
+   entry by entry. Each input has two columns, of its variation in a block and of its largest slope; those of v follow. */
+static void bound_slow(const Shape *s, const Room *r, int some, const double *driven, int fine) {
+    const int n = s->n, w = r->w, first = 2 * s->inputs;
+    Bound all[4];
+    const int count = bounds_of(s, all);
+    double *here = r->here, *most = r->most, *after = r->after, *seen = r->found;
+    memset(after, 0, sizeof *after * up8(count) * w);
+    if (!some) return;
+    for (int k = 0; k < 3; k++) { /* rows times A, A² and A³ */
+        const double *from = k ? here + (all[k - 1].place + all[k].first - all[k - 1].first) * w : r->rows;
+        multiply(all[k].count, n, n, w, from, r->slow, here + all[k].place * w);
+        for (int i = 0; i < all[k].count; i++)
+            for (int q = 0; q < s->inputs; q++) {
+                double sum = 0.0;
+                for (int j = 0; j < n; j++) sum += from[i * w + j] * driven[q * n + j];
+                seen[(all[k].place + i) * w + q] = fabs(sum);
+            }
     }
-    for (int i = 0; i < all; i += LANES) put(most + i, absolute(at(here + i)));
+    for (int i = 0; i < all[3].count; i++) {
+        memcpy(here + (all[3].place + i) * w, r->rows + (all[3].first + i) * w, sizeof *here * n);
+        memset(seen + (all[3].place + i) * w, 0, sizeof *seen * s->inputs);
+    }
+    for (int i = 0; i < count * w; i += LANES) put(most + i, absolute(at(here + i)));
     for (int k = 1; k < WAYS; k++) {
         multiply(count, n, n, w, here, r->change[1], after);
-        for (int i = 0; i < all; i += LANES) {
+        for (int i = 0; i < count * w; i += LANES) {
             vec value = at(here + i) + at(after + i);
             put(here + i, value), put(most + i, larger(at(most + i), absolute(value)));
         }
     }
-    bound_growth(r, h, fine);
-    multiply(count, n, n, w, most, r->grown, after);
-    for (int i = 0; i < count; i++) {
-        const double factor = i < R ? h * h / 8.0 : i < 2 * R ? h * h * h / 96.0 : h * h * h * h / 384.0;
-        double *row = after + i * w, sum = 0.0;
-        for (int j = 0; j < n; j++) sum += row[j] * fabs(driven[j]);
-        row[n] = sum, row[n + 1] = direct[i];
-        for (int j = 0; j < n + 2; j++) row[j] = row[j] * factor < VAGUE ? row[j] * factor : VAGUE; /* NaN is vague, too */
-        for (int j = n + 2; j < w; j++) row[j] = 0.0;
+    bound_growth(r, s->h, fine);
+    multiply(count, n, n, w, most, r->grown, here);
+    memset(after, 0, sizeof *after * up8(count) * w);
+    for (int b = 0; b < 4; b++)
+        for (int i = all[b].place; i < all[b].place + all[b].count; i++) {
+            double *row = after + i * w;
+            for (int j = 0; j < n; j++) row[first + j] = here[i * w + j] * all[b].factor;
+            for (int q = 0; q < s->inputs; q++) {
+                row[2 * q + 1] = seen[i * w + q] * all[b].factor;
+                for (int j = 0; j < n; j++) row[2 * q] += row[first + j] * fabs(driven[q * n + j]);
+            }
+        }
+}
+
+/* Add those of the modes, whose amplitudes grow by the inputs' variation or, if they fade soon, by their slopes. What fast
+   modes add to a row never gets further from its chord in a sample than 2 |C V/λ| |w|: this goes to `cap`, if that is given. */
+static void bound_modes(const Shape *s, const Room *r, int count, const double *modes, double *cap) {
+    const int n = s->n, w = r->w;
+    int place = 2 * s->inputs + s->slow;
+    Bound all[4];
+    bounds_of(s, all);
+    for (int k = 0; k < count; k++) {
+        const Mode m = mode_at(n, modes, k);
+        const double fades = m.re < 0.0 ? -m.re : 0.0, span = BLOCK * s->h;
+        double push[2 + MAX_FED];
+        for (int q = 0; q < s->inputs; q++) {
+            double drive[2] = {0.0, 0.0};
+            for (int i = 0; i < n; i++) {
+                const double f = r->rates[i * w + column_of(r, q)];
+                drive[0] += m.u[i] * f, drive[1] += m.ui[i] * f;
+            }
+            push[q] = hypot(drive[0], drive[1]);
+        }
+        for (int j = 0; j < s->rows; j++) {
+            double seen[2] = {0.0, 0.0};
+            for (int i = 0; i < n; i++) seen[0] += r->rows[j * w + i] * m.v[i], seen[1] += r->rows[j * w + i] * m.vi[i];
+            const double size = m.both * hypot(seen[0], seen[1]) * exp((m.re > 0.0 ? m.re : 0.0) * span);
+            for (int b = 0; b < 4; b++) {
+                const int i = j - all[b].first, order = all[b].order, capped = cap && order == 2 && m.root * s->h > FAST;
+                if (i < 0 || i >= all[b].count) continue;
+                double *row = capped ? cap + j * w : r->after + (all[b].place + i) * w;
+                const double once = capped ? 2.0 * size / m.root : all[b].factor * size * pow(m.root, order - 1);
+                row[place] += once;
+                if (m.im > 0.0) row[place + 1] += once;
+                for (int q = 0; q < s->inputs; q++) {
+                    if (fades * span > 1.0 && !(order == 1 && q > 1)) /* |y'| bounds the slope of what a_v multiplies */
+                        row[2 * q + 1] += once * push[q] / fades;
+                    else
+                        row[2 * q] += once * push[q];
+                    if (order > 1 && !capped) row[2 * q + 1] += all[b].factor * size * pow(m.root, order - 2) * push[q];
+                }
+            }
+        }
+        place += m.im > 0.0 ? 2 : 1;
     }
+    for (int i = 0; i < bounds_of(s, all) * w; i++) /* NaN is vague, too */
+        r->after[i] = r->after[i] < VAGUE ? r->after[i] : VAGUE;
+}
+
+/* How fine the grid must be between which bounds allow for the growth of v. */
+static int fineness(const Shape *s, const Room *r) {
+    for (int i = 0; i < s->n * r->w; i++) r->here[i] = s->h * fabs(r->slow[i]);
+    const int most = halvings_of(spectral_radius_bound(r, r->here), 1.0);
+    return most < FINEST ? most : FINEST;
+}
+
+/* The exponentials of what is left where modes are parted. */
+static void slow_exponentials(const Shape *s, const Room *r, int fine) {
+    memset(r->G, 0, sizeof *r->G * up8(s->n + 3) * r->w);
+    scale(s->n, r->w, s->h, r->slow, r->G);
+    exponentials_less_identity(r, s->n, r->G, fine + 1, fine + 1, r->change);
+}
+
+/* What `Shaken` bounds rows by: the parts of y', and from the tables' rates and rows, with the states that a_v multiplies as
+   further rows, the factors of inputs and parts. */
+static void bound(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
+                  double *moves, double *to) {
+    const Room given = room_for(s, memory), *r = &given;
+    const int n = s->n, w = r->w, columns = n + 1 + s->inputs, width = 2 * s->inputs + s->parts;
+    double driven[MAX_STATES * (2 + MAX_FED)];
+    Bound all[4];
+    memset(memory, 0, sizeof *memory * r->size);
+    set_rows(n, columns, w, rates, r->rates), set_rows(s->rows, n, w, rows, r->rows);
+    part(s, r, count, modes, driven, r->found, 0);
+    multiply(s->parts, n, columns, w, r->found, r->rates, r->here);
+    for (int i = 0; i < s->parts; i++) memcpy(moves + (size_t)i * columns, r->here + i * w, sizeof *moves * columns);
+    const int fine = fineness(s, r);
+    const int some = amplitudes(n, modes, count) < n;
+    if (some) slow_exponentials(s, r, fine);
+    bound_slow(s, r, some, driven, fine);
+    bound_modes(s, r, count, modes, 0);
+    for (int i = 0; i < bounds_of(s, all); i++) memcpy(to + (size_t)i * width, r->after + i * w, sizeof *to * width);
 }
 
 /* The only state that a row has, or 0 if it has none; -1 if it has several. */
@@ -352,23 +480,20 @@ static int prepare(const Shape *s, const double *rates, const double *rows, int 
     const Room given = room_for(s, memory), *r = &given;
     const int n = s->n, w = r->w, m = s->outputs, R = s->rows, parts = s->parts, columns = n + AHEAD + 2;
     const double h = s->h;
-    double driven[MAX_STATES], *moves = r->found, *cap = r->most, *here = r->here, *step = r->step;
+    double driven[MAX_STATES], *moves = r->found, *cap = r->sway, *here = r->here, *step = r->step;
     memset(memory, 0, sizeof *memory * r->size);
     set_rows(n, n + 2, w, rates, r->rates), set_rows(R, n + 2, w, rows, r->rows), set_rows(R, n + 2, w, rows, r->centre);
-    for (int i = 0; i < n; i++) {
-        memcpy(r->slow + i * w, r->rates + i * w, sizeof *rates * n);
+    for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) r->G[i * w + j] = h * r->rates[i * w + j];
-        driven[i] = r->rates[i * w + n], moves[i * w + i] = 1.0;
-    }
     const double turns = spectral_radius_bound(r, r->G);
-    if (count) part(s, r, count, modes, driven, moves, cap);
+    part(s, r, count, modes, driven, moves, r->most);
     multiply(parts, n, n + 2, w, moves, r->rates, here);
     lay(parts, n + 2, w, here, to + places[2]);
-    if (parts > n) lay(R, parts + 2, w, cap, to + places[7]);
-
-    for (int i = 0; i < n * w; i++) here[i] = h * fabs(r->slow[i]);
-    const int squared = halvings_of(turns, 1.0), most = halvings_of(spectral_radius_bound(r, here), 1.0);
-    const int fine = most < FINEST ? most : FINEST, halvings = count || squared > fine ? squared : fine;
+    if (s->capped) {
+        multiply(R, n, n + 2, w, r->most, r->rates, r->after);
+        for (int i = 0; i < R * w; i++) r->centre[i] -= r->after[i];
+    }
+    const int squared = halvings_of(turns, 1.0), fine = fineness(s, r), halvings = count || squared > fine ? squared : fine;
     for (int i = 0; i < n; i++) r->G[i * w + n] = h * r->rates[i * w + n], r->G[i * w + n + 2] = h * r->rates[i * w + n + 1];
     r->G[n * w + n + 1] = 1.0;
     exponentials_less_identity(r, n + 3, r->G, halvings + !count, fine + 1, r->change);
@@ -379,11 +504,8 @@ static int prepare(const Shape *s, const double *rates, const double *rows, int 
         for (int j = 0; j < n + 3; j++) endless |= !isfinite(step[i * w + j]);
     }
     if (endless) return -1;
-    if (count) {
-        scale(n, w, h, r->slow, r->G);
-        memset(r->G + n * w, 0, sizeof *step * (up8(n + 3) - n) * w);
-        exponentials_less_identity(r, n, r->G, fine + 1, fine + 1, r->change);
-    }
+    const int some = amplitudes(n, modes, count) < n;
+    if (count && some) slow_exponentials(s, r, fine);
     lay(n, n + 3, w, step, to + places[1]);
     for (int k = 0; k < AHEAD; k++) {
         multiply(n, n, columns, w, step, r->later[k], r->later[k + 1]);
@@ -399,7 +521,7 @@ static int prepare(const Shape *s, const double *rates, const double *rows, int 
     lay(up8(AHEAD * R) + n, columns, w, r->after, to + places[0]);
     multiply(R, n, n + 2, w, r->rows, r->rates, r->found);
     const double *ends[] = {r->found, r->centre};
-    for (int q = 0; q < 1 + (parts > n); q++) {
+    for (int q = 0; q < 1 + s->capped; q++) {
         for (int k = 0; k <= AHEAD; k++) rows_later(r, R, ends[q], k, here + k * R * w);
         by_row(R, AHEAD + 1, 8, w, here, r->after);
         for (int j = 0; j < R; j++)
@@ -421,11 +543,10 @@ static int prepare(const Shape *s, const double *rates, const double *rows, int 
     for (int i = 0; i < places[4] - places[3]; i++) to[places[12] + i] = fabs(to[places[3] + i]);
     for (int i = 0; i < up8(m) * (n + 2); i++) to[places[13] + i] = fabs(to[places[4] + i]);
 
-    bound_derivatives(s, r, driven, fine);
-    double *jolt = r->after + 2 * R * w;
-    for (int i = 0; i < R * w; i++) r->sway[i] += r->after[R * w + i];
-    for (int i = 0; count && i < (R - m) * w; i++) jolt[i] = VAGUE;
-    lay(R, parts + 2, w, r->after, to + places[6]), lay(R, parts + 2, w, r->sway, to + places[9]);
-    lay(R - m, parts + 2, w, jolt, to + places[10]);
+    bound_slow(s, r, some, driven, fine);
+    bound_modes(s, r, count, modes, s->capped ? cap : 0);
+    if (s->capped) lay(R, parts + 2, w, cap, to + places[7]);
+    lay(R, parts + 2, w, r->after, to + places[6]), lay(R, parts + 2, w, r->after + R * w, to + places[9]);
+    lay(R - m, parts + 2, w, r->after + 2 * R * w, to + places[10]);
     return halvings_of(turns, LONGEST);
 }

@@ -15,6 +15,7 @@ cdef class Run:
     cdef readonly bint ended
     cdef public object watch
     cdef public long long limit
+    cdef public bint marks
     cdef long long stretch  # work without a look at Ctrl-C
     cdef readonly str failure
     cdef bint failed

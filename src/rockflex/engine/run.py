@@ -12,7 +12,6 @@ import numpy as np
 
 from rockflex.engine import failures
 from rockflex.engine.rest import PhaseDecay
-from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
 from rockflex.foundation.errors import InputError
@@ -23,14 +22,15 @@ if cython.compiled:
     from cython.cimports.rockflex.engine.batch import Batch
     from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
-    from cython.cimports.rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases
+    from cython.cimports.rockflex.engine.levels import ASKED, BLOCK, ENDS, UNKNOWN
+    from cython.cimports.rockflex.engine.loops import Peaks, Phases
     from cython.cimports.rockflex.engine.rest import PhaseDecay
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
     from rockflex.engine.flow import Flow
     from rockflex.engine.journal import Journal
-    from rockflex.engine.loops_twin import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
+    from rockflex.engine.loops import ASKED, BLOCK, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
     from rockflex.engine.series import Series
 
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
@@ -71,6 +71,8 @@ class Run:
         Called now and then, some ten times a second; it may end a run by an exception.
     limit : int
         The `work` that the run may take.
+    marks : bool
+        Whether states beside events, and at the ends of accelerations, are kept.
     """
 
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
@@ -92,7 +94,7 @@ class Run:
         self.journal, self.still = Journal(self.n), np.zeros(0)
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
-        self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
+        self.watch, self.limit, self.which, self.failure, self.marks = None, 2**62, 0, "", False
         self.phase_bytes, self.failed, self.first, self.decay, self.shakes = 0, False, 0, PhaseDecay(), False
         self.restart(state, key, which)
 
@@ -225,8 +227,7 @@ class Run:
         if not self.phases.has_tables(place, False):
             self.prepare(self.met[place][0], place)
         if self.shakes:
-            tables = shaken_of(self.met[place][1], self.h, self.phases.parts(place))
-            self.phase_bytes += self.phases.set_vertical_tables(place, self.which, tables)
+            self.phase_bytes += self.phases.shake(place, self.which, self.met[place][1], self.h)
         return 0
 
     def prepare(self, key, place):
@@ -341,8 +342,7 @@ class Run:
             i = self.advance_over(ground, rise, self.scratch)
         else:
             i = self.advance_over(ground, rise, self.unkept)
-        self.passed += i
-        self.reached = 0
+        self.passed, self.reached = self.passed + i, 0
         if self.overflows():
             with cython.gil:
                 self.failure = "growth"
@@ -377,7 +377,7 @@ class Run:
         start: cython.int
         last: cython.int = a.shape[0] - 1
         self.flow.resume(history)
-        if history and self.journal.wants(a[0], self.rise_at(v, 0)):
+        if (history or self.marks) and self.journal.wants(a[0], self.rise_at(v, 0)):
             self.journal.keep(self.passed, a[0], self.rise_at(v, 0), self.y, self.now)
         while i < last and not self.ended:
             start = i
@@ -398,6 +398,8 @@ class Run:
                 self.search(a, v, False)  # otherwise it has paused to look up, which must not change what is counted
             self.check_stop_request()
         self.search(a, v, True)
+        if self.marks and not history and not self.ended:
+            self.journal.keep(self.passed + i, a[i], self.rise_at(v, i), self.y, self.now)
         return i
 
     def rise_at(self, v, i):
@@ -418,10 +420,7 @@ class Run:
         return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:
-        """Advance without excitation until no condition can fail, and no output exceed its peak; whether that was so.
-
-        It is at most so many samples.
-        """
+        """Advance until no condition can fail, and no output exceed its peak; whether that was so in `most` samples."""
         return bool(self.settle_over(min(most, 2**62), history))
 
     def settle_over(self, most, history):
@@ -484,12 +483,12 @@ class Run:
                 with cython.gil:
                     self.refuse(event, self.passed + i + u)
             a, rise = start + (end - start) * u, v[0] + (v[1] - v[0]) * u
-            if history and at_once == 1:
+            if at_once == 1 and (history or self.marks):
                 self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
             self.leave(event, self.passed + i + u, a, rise)
             if self.ended:
                 return 0
-            if history:
+            if history or self.marks:
                 self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
         if history:
             self.journal.keep(self.passed + i + 1, end, v[1], self.y, self.now)

@@ -11,6 +11,7 @@ class Journal:
 class Run:
     watch: Callable[[], object] | None
     limit: int
+    marks: bool
     memory: int
 
     def __init__(

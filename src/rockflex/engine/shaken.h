@@ -54,7 +54,7 @@ static int solve(int count, double M[MAX_FED][MAX_FED], double *x) {
 static int vary_shaken(const Tables *p, const double *v, int samples, const double *y, double *moves) {
     const Shaken *s = &p->shaken;
     const int fed = s->fed, width = shaken_columns(p);
-    double *more = moves + p->parts + 2, *varies = more + 2, most = 0.0, M[MAX_FED][MAX_FED], loop[8], unit[MAX_FED];
+    double *more = moves + 2, *varies = more + 2, most = 0.0, M[MAX_FED][MAX_FED], loop[8], unit[MAX_FED];
     double bound[5][8] = {{0}}; /* of y, y', .. */
     const double T = samples * p->h;
     vary(v, samples, p->h, more);
@@ -73,11 +73,11 @@ static int vary_shaken(const Tables *p, const double *v, int samples, const doub
     const int good = solve(fed, M, bound[1]);
     for (int j = 0; j < fed; j++) {
         bound[0][j] = fabs(y[s->places[j]]) + T * bound[1][j];
-        varies[j] = more[0] * bound[0][j] + T * most * bound[1][j];
+        varies[2 * j] = more[0] * bound[0][j] + T * most * bound[1][j];
     }
     for (int order = 1; order < 5; order++) {
         for (int j = 0; j < fed; j++)
-            varies[order * fed + j] = order * more[1] * bound[order - 1][j] + most * bound[order][j];
+            varies[order > 1 ? order * fed + j : 2 * j + 1] = order * more[1] * bound[order - 1][j] + most * bound[order][j];
         if (order < 4) product(width, 8, s->swell[order], moves, bound[order + 1]);
     }
     return good;

@@ -7,6 +7,7 @@ state is far more exact than the polynomial. The tables know up to which |a_v| t
 phases with fast modes, are left to power series.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -14,13 +15,9 @@ import numpy as np
 
 from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
 from rockflex.engine.tables import (
-    FINEST,
     VAGUE,
     by_rows,
-    derivative_bound_factors,
-    exponentials_less_identity,
     halvings_of,
-    most_of,
     padded,
     shift_of,
     spectral_radius_bound,
@@ -69,6 +66,9 @@ class ShakenTables(NamedTuple):
     swell4: Array
 
 
+BOUNDS = ShakenTables._fields[ShakenTables._fields.index("moves") :]
+
+
 class Terms(NamedTuple):
     """What a phase is summed from, its outputs and conditions in one; without the columns that a_v leaves alone."""
 
@@ -103,10 +103,13 @@ def terms_of(phase: LinearPhase | NonlinearPhase) -> Terms | None:
     return Terms(places, np.concatenate((rates, more[:, :n]), axis=2), np.concatenate((rows, more[:, n:]), axis=2))
 
 
-def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, parts: int) -> ShakenTables | None:
+Bounds = Callable[[Array, Array, Array, int, float], tuple[Array, Array]]
+
+
+def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, bounds: Bounds) -> ShakenTables | None:
     """Compute what a stack of phases has for steps of h; None if the vertical acceleration does not act in them.
 
-    So many `parts` of y' bound its rows without that.
+    The function finds `bounds`, as in `loops`.
     """
     terms = terms_of(phase)
     if terms is None:
@@ -117,14 +120,14 @@ def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, parts: int) -> Shak
     shift, rates, rows = shift_of(terms.rates), terms.rates, terms.rows
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
     C, speeds = rows[..., :n], rates[:, terms.places]
-    moves = np.zeros((S, parts, columns))
-    moves[:, :n] = rates
     fast, marches = spectral_radius_bound(phase.A * h), fed <= MAX_FED
     pieces = np.where((fast <= MARCHED) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
     turns = halvings_of(fast, 1.0)
     step = np.concatenate([steps_of(rates[k : k + 1, :, : n + 2], h, int(turns[k])) for k in range(S)])
     found = marched_of(terms, h, step, pieces)
-    found |= shaken_bound_factors(terms, h, m, parts, pieces)
+    found |= (
+        shaken_bound_factors(phase.A, terms, h, m, bounds) if marches else dict.fromkeys(BOUNDS, np.zeros((S, 0, 1)))
+    )
     slope = np.concatenate((by_rows(C, rates), np.zeros((S, rows.shape[1], fed))), axis=2)
     slope[..., columns:] = rows[..., n + 3 :]
     return ShakenTables(
@@ -139,7 +142,6 @@ def shaken_of(phase: LinearPhase | NonlinearPhase, h: float, parts: int) -> Shak
         speeds=padded(speeds),
         slope=padded(slope),
         direct=padded(rows[..., n + 2, None]),
-        moves=padded(moves),
         **{name: padded(each) for name, each in found.items()},
     )
 
@@ -305,67 +307,28 @@ def vertical_acceleration_limit(flow: Flow, q: int, given: Array, feedback: Arra
     return np.minimum(np.nan_to_num(found, nan=0.0), VAGUE)
 
 
-def shaken_bound_factors(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict[str, Array]:
-    """Factors in bounds of the rows and of the states that a_v multiplies, of those systems that have pieces.
+def shaken_bound_factors(A: Array, terms: Terms, h: float, m: int, bounds: Bounds) -> dict[str, Array]:
+    """Factors in bounds of the rows and of the states that a_v multiplies.
 
-    As in `tables.bounds`, with a_v and each p as more inputs. p is not linear in a sample: r'' has the term C_v p'',
-    r''' those C A_v p'' + C_v p''', and r'''' those C A A_v p'' + C A_v p''' + C_v p''''. The columns are those of
-    `Tables.bend`, and then the variation of a_v, |a_v'|, and of all p the variations, |p'|, |p''|, |p'''| and |p''''|.
+    With a_v and each p as more inputs, they are those of `prepare.h`. But p is not linear in a sample: r'' has the term
+    C_v p'', r''' those C A_v p'' + C_v p''', and r'''' those C A A_v p'' + C A_v p''' + C_v p''''.
     """
     (S, n, _), R, fed = terms.rates.shape, terms.rows.shape[1], len(terms.places)
-    width = parts + 4 + 5 * fed
-    found = {name: np.zeros((S, rows, width)) for name, rows in (("bend", R), ("sway", R), ("jolt", R - m))}
-    found |= {f"swell{order}": np.zeros((S, fed, width)) for order in range(1, 5)} | {"loop": np.zeros((S, fed, fed))}
-    unit = np.zeros((S, fed, n))
-    unit[:, range(fed), terms.places] = 1.0
-    fine = np.minimum(halvings_of(spectral_radius_bound(np.abs(terms.rates[..., :n]) * h), 1.0), FINEST)
-    for kind in {*fine[pieces > 0].tolist()}:
-        some = np.flatnonzero((fine == kind) & (pieces > 0))
-        A, more = terms.rates[some, :, :n], terms.rates[some, :, n + 3 :]
-        inputs = np.concatenate((terms.rates[some, :, n, None], terms.rates[some, :, n + 2 :]), axis=2)
-        changes, C = (
-            exponentials_less_identity(A * h, kind + 1)[1:],
-            np.concatenate((terms.rows[some, :, :n], unit[some]), axis=1),
-        )
-        bend, sway, jolt = (
-            ordered(each, n, parts, fed) for each in derivative_bound_factors(A, inputs, C, m, changes, h)
-        )
-        once = most_of(unit[some], A, changes, h)
-        first = ordered(
-            np.concatenate((once, once @ np.abs(inputs), np.zeros((len(some), fed, 2 + fed))), axis=2), n, parts, fed
-        )
-        found["loop"][some] = once @ np.abs(more)
-        add_turns(
-            bend, sway, jolt, (by_rows(C, more), by_rows(by_rows(C, A), more), terms.rows[some, :, n + 3 :]), m, h, fed
-        )
-        for name, each in (("bend", bend[:, :R]), ("sway", sway[:, :R]), ("jolt", jolt[:, : R - m])):
-            found[name][some] = each
-        swells = first, bend[:, R:] * (8.0 / h**2), sway[:, R:] * (96.0 / h**3), jolt[:, R - m :] * (384.0 / h**4)
-        for order, each in enumerate(swells, 1):
-            found[f"swell{order}"][some] = each
-    return found
-
-
-def ordered(bound: Array, n: int, parts: int, fed: int) -> Array:
-    """The columns of `bounds` for the inputs a, a_v and p in the order of `shaken_bound_factors`."""
-    found, inputs = np.zeros((*bound.shape[:2], parts + 4 + 5 * fed)), 2 + fed
-    varied, sloped = bound[..., n : n + inputs], bound[..., n + inputs :]
-    found[..., :n], found[..., n], found[..., n + 1] = bound[..., :n], varied[..., 0], sloped[..., 0]
-    found[..., parts + 2], found[..., parts + 3] = varied[..., 1], sloped[..., 1]
-    found[..., parts + 4 : parts + 4 + fed] = varied[..., 2:]
-    found[..., parts + 4 + fed : parts + 4 + 2 * fed] = sloped[..., 2:]
-    return found
-
-
-def add_turns(
-    bend: Array, sway: Array, jolt: Array, seen: tuple[Array, Array, Array], m: int, h: float, fed: int
-) -> None:
-    """Add the terms of p'', p''' and p'''' to the bounds of rows, and of the states after them, which lack C_v."""
-    once, twice, direct = (np.abs(each) for each in seen)
-    direct = np.concatenate((direct, np.zeros((len(direct), once.shape[1] - direct.shape[1], fed))), axis=1)
-    width = bend.shape[2]
-    second, third, fourth = (slice(width - k * fed, width - (k - 1) * fed) for k in (3, 2, 1))
-    bend[..., second] = h**2 / 8.0 * direct
-    sway[..., second], sway[..., third] = h**3 / 96.0 * once, h**3 / 96.0 * direct
-    for place, part in ((second, twice), (third, once), (fourth, direct)):
-        jolt[..., place] = h**4 / 384.0 * part[:, m:]
+    unit, more, direct = np.zeros((S, fed, n)), terms.rates[..., n + 3 :], np.zeros((S, R + fed, fed))
+    unit[:, range(fed), terms.places], direct[:, :R] = 1.0, terms.rows[..., n + 3 :]
+    C = np.concatenate((terms.rows[..., :n], unit), axis=1)
+    moves, found = bounds(A, terms.rates, C, m, h)
+    inputs, count = 4 + 2 * fed, R + fed
+    seen = np.zeros((S, found.shape[1], 3, fed))  # of p'', p''' and p''''
+    seen[:, :count, 0] = h**2 / 8.0 * np.abs(direct)
+    once, twice = (np.abs(by_rows(rows, more)) for rows in (C, by_rows(C, A)))
+    seen[:, count : 2 * count, 0], seen[:, count : 2 * count, 1] = h**3 / 96.0 * once, h**3 / 96.0 * np.abs(direct)
+    for k, part in enumerate((twice, once, np.abs(direct))):
+        seen[:, 2 * count : 3 * count - m, k] = h**4 / 384.0 * part[:, m:]
+    loop = found[:, 3 * count - m :, 4:inputs:2]
+    rows = seen.reshape(S, found.shape[1], 3 * fed)
+    found = np.concatenate((found[..., :inputs], rows, found[..., inputs:]), axis=2)
+    bend, sway, jolt, first = np.split(found, (count, 2 * count, 3 * count - m), axis=1)
+    swells = first, bend[:, R:] * (8.0 / h**2), sway[:, R:] * (96.0 / h**3), jolt[:, R - m :] * (384.0 / h**4)
+    known = {"moves": moves, "bend": bend[:, :R], "sway": sway[:, :R], "jolt": jolt[:, : R - m], "loop": loop}
+    return known | {f"swell{order}": each for order, each in enumerate(swells, 1)}

@@ -244,8 +244,7 @@ def masked_count(values: object, depth: int = 2) -> int:
 def checked_instance(name: str, value: Any, kind: type[T]) -> T:
     """Return `value` if it is a `kind`."""
     if not isinstance(value, kind):
-        given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
-        raise InputError(f"{name} must be of type {kind.__name__}, but {given} was given.", field=name)
+        raise InputError(f"{name} must be of type {kind.__name__}, but {_kind_of(value)} was given.", field=name)
     return value
 
 
@@ -256,7 +255,15 @@ def checked_instances(name: str, values: Iterable[Any], kind: type[T]) -> tuple[
     except TypeError:
         message = f"{name} must be a sequence of {kind.__name__} objects, but {shown(values)} was given."
         raise InputError(message, field=name) from None
-    return tuple(checked_instance(name, each, kind) for each in given)
+    for each in given:
+        if not isinstance(each, kind):
+            message = f"{name} must hold {kind.__name__} objects, but {_kind_of(each)} was given."
+            raise InputError(message, field=name)
+    return given
+
+
+def _kind_of(value: object) -> str:
+    return f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
 
 
 def is_one_of(value: object, words: Collection[str]) -> bool:

@@ -162,17 +162,15 @@ AspectRatio = Annotated[
         metavar="RATIO",
     ),
 ]
-Eccentricity = Annotated[
-    float | None,
-    Described(
-        "the distance of the masses to the right of the middle of the base",
-        "m",
-        low=-1000.0,
-        high=1000.0,
-        label="Eccentricity e of the base",
-        hint="In addition to the eight. Default: 0.",
-    ),
-]
+ECCENTRICITY = Described(
+    "the distance of the masses to the right of the middle of the base",
+    "m",
+    low=-1000.0,
+    high=1000.0,
+    label="Eccentricity e of the base",
+    hint="In addition to the eight. Default: 0.",
+)
+Eccentricity = Annotated[float | None, ECCENTRICITY]
 
 
 DAMPING_REMEDY = "Give the fraction of critical damping: 2 % is 0.02."

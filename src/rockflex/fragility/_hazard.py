@@ -40,6 +40,7 @@ Site = tuple[float, float] | str
 _SITE_TOLERANCE_DEG = 1e-4  # degrees; the files have five decimals
 _LEVEL_PREFIX = "poe-"
 HAZARD_DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
+_AT_HAZARD_DAMPING, _AT_OWN_DAMPING = ("sa_t1_5", "sa_avg"), ("sa_t1", "sd_t1")  # measures of studies
 
 
 def openquake_kind_and_period(measure: str) -> tuple[str, str]:
@@ -391,9 +392,9 @@ def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
 
     NaN if the runs do not state it, or it differs between their structures.
     """
-    if measure == "sa_t1_5":
+    if measure in _AT_HAZARD_DAMPING:
         return HAZARD_DAMPING
-    if measure not in ("sa_t1", "sd_t1"):
+    if measure not in _AT_OWN_DAMPING:
         return None
     found = runs["zeta_1"].dropna().unique() if "zeta_1" in runs else []
     return float(found[0]) if len(found) == 1 else math.nan
@@ -402,9 +403,9 @@ def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
 def measure_damping_of_column(im: object, damping: float | None) -> float | None:
     """Damping ratio of a column of a study: the one given, else by the column's name; NaN if that does not tell it."""
     name = getattr(im, "name", None)
-    if damping is not None or name not in ("sa_t1", "sd_t1", "sa_t1_5"):
+    if damping is not None or name not in (*_AT_HAZARD_DAMPING, *_AT_OWN_DAMPING):
         return damping
-    return HAZARD_DAMPING if name == "sa_t1_5" else math.nan
+    return HAZARD_DAMPING if name in _AT_HAZARD_DAMPING else math.nan
 
 
 def _interpolated_hazard(name: str, x: Array, points: Array, values: Array) -> Array:

@@ -243,10 +243,10 @@ def fit_stripes(
 ) -> LognormalFragility:
     """Fit a lognormal fragility to stripes by maximum likelihood of the binomial counts.
 
-    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). Every stripe
-    runs the same recordings, so its runs and those of the others are not independent: for a band give single runs, or
-    counts by recording, with their `groups`. Without them the covariance assumes independent runs, from the Fisher
-    information by the delta method, and the band is too narrow.
+    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). Stripes may
+    have different records, and different numbers of them. Where they share recordings, their runs are not independent:
+    for a band give single runs, or counts by recording, with their `groups`. Without them the covariance assumes
+    independent runs, from the Fisher information by the delta method, and the band is too narrow.
 
     Parameters
     ----------

@@ -15,6 +15,8 @@ from rockflex.engine.solution import Ends, Excitation, Solution, Solutions, Stat
 from rockflex.engine.solvers import SolverPool
 from rockflex.engine.stops import check_interruption
 from rockflex.engine.system import MAX_STATES, StepTooLongError, System
+from rockflex.engine.tangent_pass import Crossing
+from rockflex.engine.tangent_steps import Motion
 from rockflex.foundation.arrays import Array, Bools, Integers
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError, SolverError
@@ -92,6 +94,8 @@ class PreparedModel:
                 field="model",
             )
         self.place, self._accepted = 0, set[tuple[object, ...]]()
+        # Phases and events with their derivatives by the scale of a record, of each time step
+        self.tangents = dict[tuple[bool, float], tuple[dict[Any, Motion], dict[Any, Crossing]]]()
         self.n_peaks = 1 + len(quantities)
 
     @cached_property
@@ -171,6 +175,7 @@ class PreparedModel:
     def release(self) -> None:
         """Forget all tables; the next run makes them anew."""
         self.place = 0
+        self.tangents.clear()
         for name in ("pool", "shaken"):
             vars(self).pop(name, None)
 
@@ -293,7 +298,7 @@ def run_all(
     ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
     of each run in s, see `CostModel`; None means no limit. Some ten times a second the runs can be interrupted by
     Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state, and be `seen`: the
-    solver is shown after a run that could be solved.
+    solver, which has kept the states beside events, is shown after a run that could be solved.
 
     The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
     work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
@@ -337,6 +342,7 @@ def run_all(
     check_interruption()
     solver = pool.acquire(dt)
     solver.watch, solver.limit = check_interruption, first.samples_allowed(work_limit)
+    solver.marks = seen is not None
     while batch.place < len(allowed):
         try:
             solver.follow(batch, history)

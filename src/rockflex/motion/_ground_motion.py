@@ -25,6 +25,7 @@ from rockflex.foundation.language import translated
 from rockflex.foundation.shown import first_texts_shown, shown
 from rockflex.foundation.values import Value
 from rockflex.motion import _signal, _spectra
+from rockflex.motion._incremental_velocity import filtered_incremental_velocity
 from rockflex.motion._record_info import RecordInfo
 
 SHOWN_METADATA = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
@@ -185,7 +186,7 @@ class GroundMotion(HtmlTable, Value):
         The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
         especially if the frequency content of the record is close to its Nyquist frequency.
         """
-        return math.pi / (2 * GRAVITY) * float(np.sum(self._squares))
+        return math.pi / (2 * GRAVITY) * float(np.sum(_signal.squares_between_samples(self.acceleration, self.dt)))
 
     @cached_property
     def cav(self) -> float:
@@ -226,30 +227,8 @@ class GroundMotion(HtmlTable, Value):
                 f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and "
                 f"high={shown(high)} were given. Significant duration D5-95 is low=0.05, high=0.95."
             )
-        energy = _signal.cumulative_sum(self._squares)
-        if energy[-1] == 0:
-            return 0.0
-        return self._time_of_energy(high * energy[-1], energy) - self._time_of_energy(low * energy[-1], energy)
-
-    @property
-    def _squares(self) -> Array:
-        """∫a² dt over each interval, shape (n - 1,)."""
-        left, right = self.acceleration[:-1], self.acceleration[1:]
-        return self.dt / 3 * (left**2 + left * right + right**2)
-
-    def _time_of_energy(self, target: float, energy: Array) -> float:
-        """First instant at which ∫a² dt, `energy` at the samples, reaches a target."""
-        k = int(np.searchsorted(energy, target))
-        if k == 0:
-            return 0.0
-        left, right = float(self.acceleration[k - 1]), float(self.acceleration[k])
-        missing = target - float(energy[k - 1])
-        slope = (right - left) / self.dt
-        # ∫(left + slope τ)² dτ = (r³ - left³) / (3 slope) with r = a(τ).
-        # Solved for τ without dividing by the slope, which may be zero.
-        reached = math.cbrt(left**3 + 3 * slope * missing)
-        step = 3 * missing / (reached**2 + reached * left + left**2)
-        return (k - 1) * self.dt + min(step, self.dt)
+        first, last = _signal.times_of_energy_shares(self.acceleration, self.dt, (float(low), float(high)))
+        return last - first
 
     def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> _spectra.ResponseSpectrum:
         """Elastic response spectrum; see `ResponseSpectrum`.
@@ -275,6 +254,48 @@ class GroundMotion(HtmlTable, Value):
     def sa(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
         return float(self.spectrum([period], damping_ratio).sa[0])
+
+    def sa_avg(self, period: float, damping_ratio: float = 0.05) -> float:
+        """Average spectral acceleration in m/s²: the geometric mean of S_a at 0.2 T, 0.3 T, ... 3 T.
+
+        Unlike S_a(T) it sees higher modes and periods that lengthen (Eads, Miranda & Lignos 2015, EESD 44; Kohrangi,
+        Bazzurro & Vamvatsikos 2016, Bull Earthq Eng 14).
+
+        Parameters
+        ----------
+        period : float
+            The period T in s.
+        damping_ratio : float
+            Fraction of critical damping, 0 <= ζ < 1.
+
+        Raises
+        ------
+        InputError
+            If the period is not positive, or the damping ratio is out of range.
+        """
+        return _spectra.average_spectral_acceleration(self.acceleration, self.dt, period, damping_ratio)
+
+    def fiv3(self, period: float, alpha: float = 0.7, beta: float = 0.85) -> float:
+        """Filtered incremental velocity FIV3 in m/s, a measure for collapse (Dávalos & Miranda 2019, EESD 48).
+
+        The acceleration passes once through a Butterworth low-pass filter of order two with the cut-off frequency
+        beta/T. Its integral over a window of length alpha T is a function of where the window begins, from the first
+        sample to the last one, with zeros after the record. FIV3 is the sum of its three highest peaks, or, if that is
+        larger, of its three lowest troughs without their sign; the two ends count as peaks, too.
+
+        Parameters
+        ----------
+        period : float
+            The period T in s.
+        alpha, beta : float
+            Length of the window over T, and cut-off frequency times T.
+
+        Raises
+        ------
+        InputError
+            If an argument is not positive.
+        """
+        return filtered_incremental_velocity(self.acceleration, self.dt, period, alpha, beta)
 
     @cached_property
     def pva(self) -> float:

@@ -11,8 +11,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.registry import Catalogue
 from rockflex.foundation.shown import shown
 from rockflex.motion._ground_motion import GroundMotion
-
-MIN_PERIOD = 1e-6  # s
+from rockflex.motion._spectra import MIN_PERIOD
 
 
 @dataclass(frozen=True)
@@ -46,9 +45,24 @@ class MeasureInput:
         """Spectral displacement in m at the period of the first mode and another damping; NaN if there is no mode."""
         if math.isnan(self.omega):
             return math.nan
-        period = 2.0 * math.pi / self.omega
         # Such a stiff structure moves with the ground; spectra have no shorter periods.
-        return self.motion.sd(period, damping_ratio) if period >= MIN_PERIOD else self.motion.pga / self.omega**2
+        stiff = self.period < MIN_PERIOD
+        return self.motion.pga / self.omega**2 if stiff else self.motion.sd(self.period, damping_ratio)
+
+    @property
+    def period(self) -> float:
+        """Period in s of the first mode; NaN if there is no mode."""
+        return 2.0 * math.pi / self.omega
+
+    @property
+    def sa_avg(self) -> float:
+        """Average spectral acceleration in m/s² around the first mode, at 5 % damping; NaN if there is no mode."""
+        return math.nan if math.isnan(self.omega) else self.motion.sa_avg(self.period)
+
+    @property
+    def fiv3(self) -> float:
+        """Filtered incremental velocity in m/s for the first mode; NaN if there is no mode."""
+        return math.nan if math.isnan(self.omega) else self.motion.fiv3(self.period)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,6 +207,24 @@ _ALL = (
         of=lambda s: s.omega**2 * s.sd_at(0.05),
         of_what="mode",
         symbol=r"$S_a(T_1,5\,\%)$",
+    ),
+    IntensityMeasure(
+        name="sa_avg",
+        label="Sa,avg(T₁)",
+        unit="m/s²",
+        words="spectral acceleration averaged from 0.2 T₁ to 3 T₁, at 5 % damping",
+        of=lambda s: s.sa_avg,
+        of_what="mode",
+        symbol=r"$S_{a,\mathrm{avg}}(T_1)$",
+    ),
+    IntensityMeasure(
+        name="fiv3",
+        label="FIV3(T₁)",
+        unit="m/s",
+        words="filtered incremental velocity",
+        of=lambda s: s.fiv3,
+        of_what="mode",
+        symbol="FIV3$(T_1)$",
     ),
     IntensityMeasure(
         name="relative_pga",

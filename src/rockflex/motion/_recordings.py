@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from rockflex.engine.oscillator import rotated_peaks
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_instance, real_or_nan
+from rockflex.foundation.checks import checked_instance, checked_instances, real_or_nan
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import first_texts_shown, shown
 from rockflex.foundation.values import Value
@@ -265,12 +265,7 @@ def group_stations(motions: Iterable[GroundMotion]) -> tuple[StationRecord, ...]
     >>> len(stations), {len(station.horizontal) for station in stations}
     (22, {2})
     """
-    if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given.")
-    members = list(motions)
-    for each in members:
-        if not isinstance(each, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(f"motions must hold GroundMotion objects, but {type(each).__name__} was given.")
+    members = checked_instances("motions", motions, GroundMotion)
     groups: dict[str, list[GroundMotion]] = defaultdict(list)
     for name, each in zip(station_names(members), members, strict=True):
         groups[name].append(each)

@@ -4,6 +4,7 @@ import warnings
 from collections import Counter
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import get_args
 
 import numpy as np
@@ -21,9 +22,15 @@ from rockflex.foundation.checks import (
 from rockflex.foundation.errors import InputError, RecordWarning
 from rockflex.foundation.language import translated
 from rockflex.foundation.shown import first_texts_shown, shown
+from rockflex.motion._conditional import ConditionalSpectrum
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
-from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor
+from rockflex.motion._spectra import (
+    TargetSpectrum,
+    comparison_periods,
+    scalable_spectral_ordinate,
+    spectrum_fitting_factor,
+)
 
 GroupLimits = tuple[tuple[Sequence[Hashable | None], int], ...]
 """For each limit the group of every record, None for a group of its own, and the most of one group."""
@@ -37,27 +44,44 @@ class SelectionProblem:
     """The spectra to choose from, and the objective by which sets are compared.
 
     It is w times the mean of the squared misfits of the records, and 1 - w times the squared misfit of their mean.
+    Where a spread of ln S_a is wanted, it is the mean over the periods of the squared misfits of mean and standard
+    deviation of ln S_a (Jayaram, Lin & Baker 2011).
     """
 
     spectra: Array  # (n_records, m): scaled, over the target
     record_weight: float  # w
     group_limits: GroupLimits
+    spread: Array | None = None  # (m,): wanted standard deviation of ln S_a
 
-    @property
+    @cached_property
+    def values(self) -> Array:
+        """What is summed over the records of a set, shape (n_records, m)."""
+        return self.spectra if self.spread is None else np.log(self.spectra)
+
+    @cached_property
+    def squares(self) -> Array:
+        """Squares that are summed beside it, shape (n_records, 1 or m)."""
+        return self.misfits[:, None] ** 2 if self.spread is None else self.values**2
+
+    @cached_property
     def misfits(self) -> Array:
         """Root mean square of ln(spectrum/target) of each record, shape (n_records,)."""
         return log_spectrum_misfit(self.spectra)
 
     def objective(self, total: Array, squares: Array, count: int) -> Array:
         """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
-        of_mean = log_spectrum_misfit(total / count) ** 2
-        return (1.0 - self.record_weight) * of_mean + self.record_weight * squares / count
+        if self.spread is None:
+            of_mean = log_spectrum_misfit(total / count) ** 2
+            return (1.0 - self.record_weight) * of_mean + self.record_weight * squares[:, 0] / count
+        mean = total / count
+        variance = np.maximum(squares / count - mean**2, 0.0) * (count / max(count - 1, 1))
+        return np.mean(mean**2 + (np.sqrt(variance) - self.spread) ** 2, axis=-1)
 
     def objective_of(self, chosen: Sequence[int]) -> float:
         """Return the objective of one set."""
         rows = list(chosen)
-        total, squares = self.spectra[rows].sum(axis=0), np.sum(self.misfits[rows] ** 2)
-        return float(self.objective(total[None], np.array([squares]), len(rows))[0])
+        total, squares = self.values[rows].sum(axis=0), self.squares[rows].sum(axis=0)
+        return float(self.objective(total[None], squares[None], len(rows))[0])
 
     def allowed(self, chosen: Sequence[int]) -> np.ndarray:
         """Return which records may be added to a set, shape (n_records,)."""
@@ -96,25 +120,24 @@ def _ranked_records(choice: SelectionProblem, n: int) -> list[int]:
 
 
 def _greedy_record_set(choice: SelectionProblem, n: int, seed: int) -> list[int]:
-    own = choice.misfits**2
-    chosen, total, squares = [seed], choice.spectra[seed], own[seed]
+    chosen, total, squares = [seed], choice.values[seed], choice.squares[seed]
     while len(chosen) < n and (free := choice.allowed(chosen)).any():
-        objective = choice.objective(total + choice.spectra, squares + own, len(chosen) + 1)
+        objective = choice.objective(total + choice.values, squares + choice.squares, len(chosen) + 1)
         i = int(np.argmin(np.where(free, objective, np.inf)))
         chosen.append(i)
-        total, squares = total + choice.spectra[i], squares + own[i]
+        total, squares = total + choice.values[i], squares + choice.squares[i]
     return chosen
 
 
 def _record_set_after_exchanges(choice: SelectionProblem, chosen: list[int]) -> list[int]:
     """Replace one record at a time, always by the exchange that helps most."""
-    own, present = choice.misfits**2, choice.objective_of(chosen)
+    present = choice.objective_of(chosen)
     while True:
         best, exchange = present, None
         for place in range(len(chosen)):
             rest = chosen[:place] + chosen[place + 1 :]
-            total, squares = choice.spectra[rest].sum(axis=0), own[rest].sum()
-            objective = choice.objective(total + choice.spectra, squares + own, len(chosen))
+            total, squares = choice.values[rest].sum(axis=0), choice.squares[rest].sum(axis=0)
+            objective = choice.objective(total + choice.values, squares + choice.squares, len(chosen))
             objective[~choice.allowed(rest)] = np.inf
             other = int(np.argmin(objective))
             if objective[other] < best * (1.0 - MIN_GAIN):
@@ -156,18 +179,32 @@ def select_records(
         for name, most in (("per_event", per_event), ("per_station", per_station))
     ]
     check_horizontal_component(*motions)
-    records = _candidate_recordings(motions, measure)
+    records, spread = _candidate_recordings(motions, measure), None
     count = checked_whole_number("n", n, 1)
     if count > len(records):
         kind = "records" if measure == "component" else "pairs"
         raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
     unscaled = np.stack([record.sa(examined, measure, fitted.damping_ratio) for record in records])
     names = [record.names[0] for record in records]
-    fitting = [spectrum_fitting_factor(row, aim, name) for row, name in zip(unscaled, names, strict=True)]
-    factors = np.clip(fitting, low, high)
+    if isinstance(fitted, ConditionalSpectrum):
+        _check_conditional_choice(count, weight, least_ratio)
+        spread = fitted.dispersion_at(examined)
+        factors = _factors_to_one_ordinate(records, names, fitted, measure)
+        usable = np.flatnonzero((factors >= low) & (factors <= high))
+        if usable.size < count:
+            raise InputError(
+                f"n = {count} records were asked for, but only {usable.size} of {len(records)} reach S_a("
+                f"{fitted.period:g} s) = {fitted.at([fitted.period])[0]:.4g} m/s² with factors from {low:g} to "
+                f"{high:g}. Choose fewer, give more records, or widen scale_limits.",
+                field="n",
+            )
+        records, unscaled, factors = [records[i] for i in usable], unscaled[usable], factors[usable]
+    else:
+        fitting = [spectrum_fitting_factor(row, aim, name) for row, name in zip(unscaled, names, strict=True)]
+        factors = np.clip(fitting, low, high)
     groups = {"per_event": [each.event for each in records], "per_station": [each.station for each in records]}
     limits = tuple((groups[name], most) for name, most in caps if most is not None)
-    found = best_record_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
+    found = best_record_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits, spread), count)
     if len(found) < count:
         given = " and ".join(f"{name}={most}" for name, most in caps if most is not None)
         raise InputError(
@@ -179,6 +216,32 @@ def select_records(
     if least_ratio is not None:
         factors = _raised_scale_factors(factors, unscaled / aim, checked_positive("least_ratio", least_ratio, ""), high)
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
+
+
+def _check_conditional_choice(count: int, weight: float, least_ratio: float | None) -> None:
+    """Refuse what has no meaning where the spread of the records is given, too."""
+    if count < 2:
+        raise InputError(
+            f"n must be at least 2 for a conditional spectrum, as one record has no spread, but {count} was given.",
+            field="n",
+        )
+    for name, given in (("record_weight", weight or None), ("least_ratio", least_ratio)):
+        if given is not None:
+            raise InputError(
+                f"{name} is for targets of codes: a conditional spectrum says how records scatter about it. Leave it "
+                "out.",
+                field=name,
+            )
+
+
+def _factors_to_one_ordinate(
+    records: Sequence[Recording], names: Sequence[str], target: ConditionalSpectrum, measure: Combination
+) -> Array:
+    """Return the factors that give each record the ordinate of the target at its period."""
+    period = target.period
+    own = [float(record.sa([period], measure, target.damping_ratio)[0]) for record in records]
+    usable = [scalable_spectral_ordinate(each, name, period) for each, name in zip(own, names, strict=True)]
+    return target.at([period])[0] / np.array(usable)
 
 
 def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:

@@ -1,4 +1,7 @@
-"""Changes of sampled accelerations: finer sampling, baseline correction, filtering; and their exact integral."""
+"""Changes of sampled accelerations: finer sampling, baseline correction, filtering; and their exact integrals."""
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -19,6 +22,33 @@ def velocity_from_acceleration(a: Array, dt: float) -> Array:
 def cumulative_sum(increments: Array) -> Array:
     """Sums of the increments, from zero."""
     return np.concatenate((np.zeros(1), np.cumsum(increments)))
+
+
+def squares_between_samples(a: Array, dt: float) -> Array:
+    """∫a² dt over each interval, shape (n - 1,)."""
+    left, right = a[:-1], a[1:]
+    return dt / 3 * (left**2 + left * right + right**2)
+
+
+def times_of_energy_shares(a: Array, dt: float, shares: Sequence[float]) -> list[float]:
+    """First instants at which ∫a² dt reaches shares of its final value; zeros if that is zero."""
+    energy = cumulative_sum(squares_between_samples(a, dt))
+    return [_time_of_energy(a, dt, energy, share * energy[-1]) if energy[-1] else 0.0 for share in shares]
+
+
+def _time_of_energy(a: Array, dt: float, energy: Array, target: float) -> float:
+    """First instant at which ∫a² dt, `energy` at the samples, reaches a target."""
+    k = int(np.searchsorted(energy, target))
+    if k == 0:
+        return 0.0
+    left, right = float(a[k - 1]), float(a[k])
+    missing = target - float(energy[k - 1])
+    slope = (right - left) / dt
+    # ∫(left + slope τ)² dτ = (r³ - left³) / (3 slope) with r = a(τ).
+    # Solved for τ without dividing by the slope, which may be zero.
+    reached = math.cbrt(left**3 + 3 * slope * missing)
+    step = 3 * missing / (reached**2 + reached * left + left**2)
+    return (k - 1) * dt + min(step, dt)
 
 
 def refine_samples(a: Array, k: int) -> Array:

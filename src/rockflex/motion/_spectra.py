@@ -21,6 +21,7 @@ from rockflex.foundation.values import Value
 
 MIN_PERIOD = 1e-6  # s
 N_COMPARED = 50  # periods at which a range is examined
+AVERAGED = np.arange(2, 31) / 10  # periods of an average spectral acceleration, over that of the structure
 
 
 def checked_spectrum_periods(periods: ArrayLike) -> Array:
@@ -112,6 +113,14 @@ def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, dampin
     with np.errstate(over="ignore"):  # the acceleration is zero if the square of the period overflows
         sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=moves)
     return ResponseSpectrum(period, zeta, sd, sv, sa)
+
+
+def average_spectral_acceleration(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
+    """Return the geometric mean of spectral accelerations in m/s²; see `GroundMotion.sa_avg`."""
+    periods = checked_positive("period", period, "s") * AVERAGED
+    periods[periods < MIN_PERIOD] = 0.0  # so stiff an oscillator moves with the ground
+    with np.errstate(divide="ignore"):
+        return float(np.exp(np.log(response_spectrum(acceleration, dt, periods, damping_ratio).sa).mean()))
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)

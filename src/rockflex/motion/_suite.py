@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import checked_instance, is_one_of
+from rockflex.foundation.checks import checked_instance, checked_instances, is_one_of
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.html import HtmlTable, value_range_text
 from rockflex.foundation.shown import few_texts_shown, number_with_noun, shown
 from rockflex.foundation.values import Value
+from rockflex.motion._conditional import ConditionalSpectrum
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._recordings import Combination, Recording
@@ -65,17 +66,10 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
     name: str = ""
 
     def __init__(self, motions: Iterable[GroundMotion], name: str = "") -> None:
-        if not isinstance(motions, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(
-                f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
-            )
-        members = tuple(motions)
+        members = checked_instances("motions", motions, GroundMotion)
         checked_instance("name", name, str)
         if not members:
             raise InputError("A suite needs at least one motion, but none was given.")
-        for motion in members:
-            if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-                raise InputError(f"A suite holds GroundMotion objects, but {type(motion).__name__} was given.")
         repeated = [key for key, count in Counter(motion.name for motion in members).items() if count > 1]
         if repeated:
             names = ", ".join(map(repr, repeated[:5]))
@@ -173,10 +167,14 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         from the records with the least misfits, and the better one is returned. A set improved by exchanges need not
         be the best of all, but the same records always give the same set.
 
+        For a `ConditionalSpectrum` each record gets the factor for which it has the ordinate of the target at the
+        period T*; records that need a factor beyond the limits are left out. Of the set, both the mean and the standard
+        deviation of ln S_a then fit best: the mean over the periods of the sum of their squared misfits is least.
+
         Parameters
         ----------
         target : TargetSpectrum
-            The target; spectra have its damping ratio.
+            The target, of codes or a `ConditionalSpectrum`; spectra have its damping ratio.
         n : int
             Number of records; with a measure of pairs, of pairs.
         periods : array_like
@@ -193,10 +191,11 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
             Most records of one earthquake, and at one station. Records of which it is not known are not limited.
         record_weight : float
             Weight of the mean of the squared misfits of the records, beside the squared misfit of their mean: from 0,
-            only the mean counts, to 1, the records with the least misfits are chosen, whatever their mean.
+            only the mean counts, to 1, the records with the least misfits are chosen, whatever their mean. Not for
+            conditional spectra.
         least_ratio : float, optional
             Smallest ratio of the mean to the target. If the chosen set has less anywhere, all of its factors are
-            multiplied by the same number.
+            multiplied by the same number. Not for conditional spectra.
 
         Returns
         -------
@@ -217,6 +216,8 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
 
         References
         ----------
+        Jayaram N, Lin T, Baker JW. A computationally efficient ground-motion selection algorithm for matching a target
+        response spectrum mean and variance. *Earthquake Spectra* 2011;27(3):797–815: the misfit of mean and spread.
         Baker JW, Lee C. An improved algorithm for selecting ground motions to match a conditional spectrum.
         *J Earthquake Eng* 2018;22(4):708–723: the search, greedy and by exchanges.
 
@@ -289,10 +290,10 @@ class Selection(HtmlTable, Value):
     sa: Array
 
     def __repr__(self) -> str:
-        return (
-            f"Selection({number_with_noun(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
-            f"least mean/target {self.least_ratio:.2g})"
-        )
+        records, misfit = number_with_noun(len(self.names), "record"), f"{self.misfit:.2g}"
+        if isinstance(self.target, ConditionalSpectrum):
+            return f"Selection({records}, misfit of the median {misfit}, of the spread {self.spread_misfit:.2g})"
+        return f"Selection({records}, misfit of the mean {misfit}, least mean/target {self.least_ratio:.2g})"
 
     def _shown_as(self) -> Mapping[str, Any]:
         return {
@@ -300,7 +301,11 @@ class Selection(HtmlTable, Value):
             "measure": self.measure,
             "periods": f"{value_range_text(self.periods)} s",
             "factors": value_range_text(self.factors),
-            "misfit of the mean": self.misfit,
+            **(
+                {"misfit of the median": self.misfit, "misfit of the spread": self.spread_misfit}
+                if isinstance(self.target, ConditionalSpectrum)
+                else {"misfit of the mean": self.misfit}
+            ),
             "least mean/target": self.least_ratio,
             "mean/target at a period of zero": None if math.isnan(self.zero_period_ratio) else self.zero_period_ratio,
         }
@@ -329,8 +334,16 @@ class Selection(HtmlTable, Value):
 
     @property
     def misfit(self) -> float:
-        """Root mean square over the periods of ln(mean/target)."""
-        return float(log_spectrum_misfit(self.mean / self.target.at(self.periods)))
+        """Root mean square over the periods of ln(mean/target); of a conditional spectrum of ln(median/target)."""
+        centre = self.median if isinstance(self.target, ConditionalSpectrum) else self.mean
+        return float(log_spectrum_misfit(centre / self.target.at(self.periods)))
+
+    @property
+    def spread_misfit(self) -> float:
+        """Root mean square over the periods of `dispersion` less that of a conditional spectrum; else NaN."""
+        if not isinstance(self.target, ConditionalSpectrum):
+            return math.nan
+        return float(np.sqrt(np.mean((self.dispersion - self.target.dispersion_at(self.periods)) ** 2)))
 
     @property
     def least_ratio(self) -> float:
@@ -386,6 +399,7 @@ class Selection(HtmlTable, Value):
     def spectra(self) -> "pd.DataFrame":
         """Return a pandas table with one row for each period: target, statistics, and S_a of each record in m/s².
 
+        A conditional spectrum adds its `target_dispersion`.
         The column of a record has its name, with "record " before it where that is the name of another column.
         """
         import pandas as pd
@@ -397,6 +411,8 @@ class Selection(HtmlTable, Value):
             "median": self.median,
             "dispersion": self.dispersion,
         }
+        if isinstance(self.target, ConditionalSpectrum):
+            columns["target_dispersion"] = self.target.dispersion_at(self.periods)
         for names, row in zip(self.names, self.sa, strict=True):
             name = " + ".join(names)
             columns[f"record {name}" if name in columns else name] = row

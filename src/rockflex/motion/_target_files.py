@@ -1,7 +1,8 @@
 """Target spectra from files: which column is the period or frequency, which one the acceleration, and their units."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -14,6 +15,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path
 from rockflex.foundation.shown import few_texts_shown, shown
 from rockflex.motion import _text
+from rockflex.motion._conditional import ConditionalSpectrum, conditional_spectrum
 from rockflex.motion._declared import Declared, declared
 from rockflex.motion._findings import Evidence, quoted_line, settled
 from rockflex.motion._header import MAX_LINE, units_in_line
@@ -45,6 +47,7 @@ ROLE_OF_QUANTITY: dict[Quantity, Role] = {
     "velocity": "velocity",
     "displacement": "displacement",
 }
+SPREAD = re.compile(r"(?<![^\W_])(?:sigma|σ|std|stdev|dispersion|beta)(?![^\W\d_])", re.IGNORECASE)
 LABEL_AND_BRACKET = re.compile(r"[^()\[\]]++[(\[][^()\[\]]*+[)\]]")
 EXPECTED = "a target spectrum is expected as two columns, period and S_a"
 
@@ -99,6 +102,71 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
+    file, _, _, periods, _, ordinates = _read_ordinates(path, units)
+    with _naming_file(file, "damping_ratio"):
+        return TargetSpectrum(periods, ordinates, damping_ratio, file.stem)
+
+
+def read_conditional_spectrum(
+    path: str | Path,
+    period: float,
+    *,
+    sa: float | None = None,
+    epsilon: float | None = None,
+    units: str | None = None,
+    damping_ratio: float = 0.05,
+) -> ConditionalSpectrum:
+    r"""Read the median and the spread of a ground-motion model from a file, and return its conditional spectrum.
+
+    The file has a third column beside those of `read_target`, labelled sigma, std or dispersion: the standard deviation
+    of ln S_a.
+
+    Parameters
+    ----------
+    path, units, damping_ratio
+        As in `read_target`.
+    period, sa, epsilon
+        As in `conditional_spectrum`.
+
+    Raises
+    ------
+    InputError
+        As `read_target` and `conditional_spectrum`, or if no label or more than one names a standard deviation.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> _ = Path("model.csv").write_text("period (s), median (g), sigma\n"
+    ...     "0.05, 0.30, 0.60\n0.2, 0.52, 0.65\n"
+    ...     "1.0, 0.16, 0.68\n2.0, 0.07, 0.72\n")
+    >>> rf.read_conditional_spectrum("model.csv", 1.0, epsilon=1.5)
+    ConditionalSpectrum('model', S_a(1 s) = 4.353 m/s², 0.05 to 2 s, ζ = 0.05)
+    """
+    file, table, columns, periods, order, ordinates = _read_ordinates(path, units)
+    spread = [k for k, each in enumerate(table.labels) if SPREAD.search(each)]
+    if len(spread) != 1 or columns[spread[0]].role is not None:
+        raise InputError(
+            f"{file}: one label must name the standard deviation of ln S_a, sigma, std or dispersion, beside period "
+            f"(s) and median (g), but the labels are {few_texts_shown([shown(each) for each in table.labels])}."
+        )
+    with _naming_file(file, "damping_ratio", "period", "sa", "epsilon"):
+        return conditional_spectrum(
+            periods,
+            ordinates,
+            _column(file, table, spread[0])[order],
+            period,
+            sa=sa,
+            epsilon=epsilon,
+            damping_ratio=damping_ratio,
+            name=file.stem,
+        )
+
+
+def _read_ordinates(
+    path: str | Path, units: str | None
+) -> tuple[Path, _text.NumericTable, list[TargetColumn], Array, slice, Array]:
+    """Return the file, its table and columns, the periods in s, the order of rows, and ordinates in m/s²."""
     given = declared(units)
     file = checked_file_path("path", path)
     lines, of_hundred = _with_fractions(_text.read_text_lines(file))
@@ -118,10 +186,16 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
             "TargetSpectrum(periods, sa) from arrays in s and m/s².",
             field="units",
         )
+    return file, table, columns, periods, order, ordinates * unit.si
+
+
+@contextmanager
+def _naming_file(file: Path, *arguments: str) -> Generator[None]:
+    """Name the file in what is refused because of its values, and not of an argument."""
     try:
-        return TargetSpectrum(periods, ordinates * unit.si, damping_ratio, file.stem)
+        yield
     except InputError as error:
-        if error.field == "damping_ratio":
+        if error.field in arguments:
             raise
         raise InputError(f"{file}: {error}", field=error.field) from error
 

@@ -16,6 +16,7 @@ from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import short_number
 from rockflex.foundation.units import Unit
+from rockflex.motion._conditional import ConditionalSpectrum
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._measures import MEASURES, MeasureInput
 from rockflex.motion._suite import Selection
@@ -149,7 +150,9 @@ def plot_selection(selection: Selection, *, period: float | None = None, size: S
 
     The mean is the arithmetic one, which codes compare with the target. The band reaches from the 16th to the 84th
     percentile of a lognormal distribution, median times exp(±σ). The range of periods for which the records were chosen
-    is shaded, and the dashed line is at 0.9, which EN 1998-1:2004 and ASCE 7-16 ask for.
+    is shaded, and the dashed line is at 0.9, which EN 1998-1:2004 and ASCE 7-16 ask for. With a conditional spectrum
+    the median takes the place of the mean, the bands reach from -2 σ to +2 σ, and the lower axes compare the standard
+    deviations of ln S_a.
 
     Parameters
     ----------
@@ -163,7 +166,7 @@ def plot_selection(selection: Selection, *, period: float | None = None, size: S
     Returns
     -------
     matplotlib.figure.Figure
-        Two axes over the period in s: S_a in m/s², and mean/target.
+        Two axes over the period in s: S_a in m/s², and mean/target, or the standard deviation of ln S_a.
 
     Raises
     ------
@@ -203,13 +206,17 @@ def plot_selection(selection: Selection, *, period: float | None = None, size: S
         _draw_selected_spectra(upper, selection, periods, rows / unit.size)
         name = figures.literal_text(target.name) or translated("target")
         upper.plot(known, target.at(known) / unit.size, color=RED, linewidth=1.6, label=name)
-        within = np.isin(periods, known)
-        lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
-        lower.axhline(1.0, color=RED, linewidth=0.9)
-        lower.axhline(_CODE_MINIMUM, color=BLACK, linewidth=0.8, linestyle="--")
-        inside = selection.mean / target.at(selection.periods)
-        bottom, top = min(0.85, float(inside.min())), max(1.15, float(inside.max()))
-        lower.set(ylim=(bottom - 0.1, top + 0.1), ylabel=translated("mean/target"), xlabel="$T$ [s]")
+        if isinstance(target, ConditionalSpectrum):
+            _draw_spread(upper, lower, target, known, periods, rows)
+        else:
+            within = np.isin(periods, known)
+            lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
+            lower.axhline(1.0, color=RED, linewidth=0.9)
+            lower.axhline(_CODE_MINIMUM, color=BLACK, linewidth=0.8, linestyle="--")
+            inside = selection.mean / target.at(selection.periods)
+            bottom, top = min(0.85, float(inside.min())), max(1.15, float(inside.max()))
+            lower.set(ylim=(bottom - 0.1, top + 0.1), ylabel=translated("mean/target"))
+        lower.set_xlabel("$T$ [s]")
         upper.set(xscale="log", yscale="log", ylabel=unit.heading(translated(_NAMES[selection.measure])))
         upper.set_xlim(float(periods[0]), float(periods[-1]))
         for axis in (upper.xaxis, upper.yaxis):
@@ -225,15 +232,36 @@ def plot_selection(selection: Selection, *, period: float | None = None, size: S
     return figure
 
 
+def _draw_spread(
+    upper: Axes, lower: Axes, target: ConditionalSpectrum, known: Array, periods: Array, rows: Array
+) -> None:
+    """Draw the target two standard deviations from its median, and both standard deviations of ln S_a."""
+    wanted = target.dispersion_at(known)
+    for sign in (-2.0, 2.0):
+        ordinates = target.at(known) * np.exp(sign * wanted) / figures.axis_unit("acceleration").size
+        label = translated("target ± 2 σ") if sign < 0.0 else "_"
+        upper.plot(known, ordinates, color=RED, linewidth=1.0, linestyle="--", label=label)
+    spread = np.log(rows).std(axis=0, ddof=1)
+    lower.plot(known, wanted, color=RED, linewidth=1.4)
+    lower.plot(periods, spread, color=BLUE, linewidth=1.4)
+    lower.set(ylim=(0.0, 1.15 * max(float(wanted.max()), float(spread.max()), 0.1)), ylabel=r"$\sigma$ (ln $S_a$)")
+
+
 def _draw_selected_spectra(axes: Axes, selection: Selection, periods: Array, rows: Array) -> None:
-    count = len(rows)
+    count, conditional = len(rows), isinstance(selection.target, ConditionalSpectrum)
+    median = np.exp(np.log(rows).mean(axis=0))
     if count > 1:
         for k, row in enumerate(rows):
             label = translated("{n} records", n=count) if k == 0 else f"_{k}"
             axes.plot(periods, row, color=GRAY, linewidth=0.6, alpha=0.7, label=label)
-        median, spread = np.exp(np.log(rows).mean(axis=0)), np.log(rows).std(axis=0, ddof=1)
+        spread = np.log(rows).std(axis=0, ddof=1) * (2.0 if conditional else 1.0)
         band = median * np.exp(-spread), median * np.exp(spread)
-        axes.fill_between(periods, *band, color=BLUE, alpha=0.15, linewidth=0.0, label=translated("16 to 84 %"))
+        label = translated("records ± 2 σ" if conditional else "16 to 84 %")
+        axes.fill_between(periods, *band, color=BLUE, alpha=0.15, linewidth=0.0, label=label)
+    if conditional:
+        label = translated("median: misfit {misfit}", misfit=f"{selection.misfit:.2g}")
+        axes.plot(periods, median, color=BLUE, linewidth=1.6, label=label)
+        return
     label = translated(
         "mean: misfit {misfit}, at least {ratio} of the target"
         if count > 1

@@ -24,6 +24,7 @@ SHARE = 1e-3  # of a peak, by which it moves at most in that step
 IN_FLIGHT = 1e-9  # of the reaction at rest
 SAME = 1e-9  # of a time step: instants that are one
 FLAGGED = 10.0  # elasticity from which on 1 % of the record moves a peak by more than 10 %
+KEPT = 4  # models that are prepared for further sensitivities
 DERIVED = (
     "max_rotation", *(f"max_{name}" for name in GLOBAL), "min_vertical_reaction", "max_tendon_force",
     "tendon_utilisation", "residual_rotation", "balance_ratio", "max_joint_rotation", "min_joint_force",
@@ -151,6 +152,22 @@ def _moved(tangents: RunTangents, engine: PreparedModel, place: int, by: float) 
     )
 
 
+_known = dict[int, TiedModel]()  # by identity: the runs of one structure share their model
+
+
+def _prepared(model: RockingModel) -> TiedModel:
+    """The model prepared for runs; the last few are kept."""
+    found = _known.get(id(model))
+    if found is None:
+        tracked = tracked_quantities(model)
+        extremes = None if tracked.extremes is None else tracked.extremes.quantities
+        found = TiedModel(model, PreparedModel(model, tracked.peaks.quantities, extremes), tracked)
+        for oldest in list(_known)[: 1 - KEPT]:
+            _known.pop(oldest, None)
+        _known[id(model)] = found
+    return found
+
+
 def sensitivity_of_history(model: RockingModel, states: Array) -> Sensitivity:
     """Return the sensitivity of a run to the scale of its record, from its history.
 
@@ -159,15 +176,13 @@ def sensitivity_of_history(model: RockingModel, states: Array) -> Sensitivity:
     InputError
         If the model is not linear between events.
     """
-    tracked = tracked_quantities(model)
-    extremes = None if tracked.extremes is None else tracked.extremes.quantities
-    engine = PreparedModel(model, tracked.peaks.quantities, extremes)
+    tied = _prepared(model)
     run, dt, free = _run_of_history(states)
     first = states[:1]
     (key,) = model.branches_at(first[:, SIDE], model.layout.of(first, model.layout.rotation), first).tolist()
     start = (tuple(key), first[0, HEADER:].copy())
-    made = tangents_of_run(engine, run, dt, free_vibration=free, start=start)
-    numbers = numbers_with_derivatives(TiedModel(model, engine, tracked), (), made)
+    made = tangents_of_run(tied.engine, run, dt, free_vibration=free, start=start)
+    numbers = numbers_with_derivatives(tied, (), made)
     return Sensitivity(
         {name: float(slope[0]) / value for name, (value, slope) in numbers.items() if _is_peak(name) and value > 0.0}
     )
@@ -179,13 +194,15 @@ def _is_peak(name: str) -> bool:
 
 def _run_of_history(states: Array) -> tuple[Excitation, float, float]:
     """What shook the run of a history, its time step, and the free vibration after it in s."""
-    times, shaken = states[:, TIME], states[:, (GROUND, RISE)]
-    instants, states_at = np.unique(times, return_counts=True)
-    single = instants[states_at == 1]  # the time of an event occurs twice, and there may be many within a sample
-    step = float(np.median(np.diff(single if single.size > 1 else instants)))
+    times = np.ascontiguousarray(states[:, TIME])
+    apart = np.concatenate(((True,), np.diff(times) > 0.0, (True,)))
+    single = times[apart[:-1] & apart[1:]]  # the time of an event occurs twice, and there may be many within a sample
+    lengths = np.diff(single if single.size > 1 else times[apart[1:]])
+    step = float(np.partition(lengths, lengths.size // 2)[lengths.size // 2])
     count = round(float(times[-1]) / step)
     step = float(times[-1]) / count if abs(times[-1] / count - step) < SAME * step else step
     count = math.ceil(float(times[-1]) / step - SAME)
+    shaken = states[:, (GROUND, RISE)] if states[:, RISE].any() else states[:, (GROUND,)]
     samples = step * np.arange(count + 1)
     found = np.stack([np.interp(samples, times, column) for column in shaken.T], axis=1)
     nodes = np.minimum(np.searchsorted(times, samples - SAME * step), len(times) - 1)
@@ -196,5 +213,5 @@ def _run_of_history(states: Array) -> tuple[Excitation, float, float]:
         found[-1] = found[-2] + (shaken[-1] - shaken[place]) * step / (times[-1] - times[place])
     jumps = np.flatnonzero((np.diff(times) == 0.0) & (np.diff(shaken, axis=0) != 0.0).any(axis=1))
     end = round(float(times[jumps[0]]) / step) if jumps.size else count
-    vertical = found[: end + 1, 1].copy() if found[:, 1].any() else None
+    vertical = found[: end + 1, 1].copy() if found.shape[1] > 1 else None
     return Excitation(found[: end + 1, 0].copy(), vertical), step, (count - end) * step

@@ -1,6 +1,6 @@
 """Structures that rock at several joints: walls that open above their base as well, and segmental piers."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -14,8 +14,41 @@ from rockflex.foundation.shown import shown
 from rockflex.structure._joint import Joint, JointAbove
 from rockflex.structure._leaning import Leaning, lumped_structure_of
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import ModifiedStructure, Structure
+from rockflex.structure._structure import InFile, ModifiedStructure, Structure
 from rockflex.structure._yielding_stories import YieldingStories
+
+
+@described
+def joints_at(
+    heights: Annotated[
+        list[float],
+        Described("a list of the heights of the joints above the base in m, from the lowest up", "m", form=PLAIN),
+    ],
+    half_widths: Annotated[
+        float | list[float],
+        Described("the distance from the axis of the masses to either edge", "m", form=one_for_each("joint")),
+    ],
+) -> list[Joint]:
+    """Return joints at some heights, as files and forms have them.
+
+    Raises
+    ------
+    InputError
+        If there is not one half width for all joints, or one for each.
+    """
+    widths = half_widths if isinstance(half_widths, list) else [half_widths] * len(heights)
+    if len(widths) != len(heights):
+        raise InputError(
+            f"half_widths must be one number, or one for each of the {len(heights)} joints, but {shown(widths)} was "
+            "given.",
+            field="half_widths",
+        )
+    return [Joint(height, width) for height, width in zip(heights, widths, strict=True)]
+
+
+def _table_of_joints(joints: Sequence[Mapping[str, float]]) -> dict[str, list[float]]:
+    """Return the arguments of `joints_at` for the arguments of joints."""
+    return {f"{name}s": [each[name] for each in joints] for name in ("height", "half_width")}
 
 
 @described
@@ -55,6 +88,15 @@ class Jointed(ModifiedStructure):
     0.0151 0.0
     0.006 0.0311
     """
+
+    in_file = InFile(
+        key="joints",
+        words=Described("a table", label="Joints above the base", form=PLAIN, page="where it rocks besides its base"),
+        argument="joints",
+        makes=joints_at,
+        taken=_table_of_joints,
+        floors=True,
+    )
 
     structure: Annotated[
         Structure,
@@ -106,34 +148,6 @@ class Jointed(ModifiedStructure):
                 )
             )
         return {"joints": tuple(found)}
-
-
-@described
-def joints_at(
-    heights: Annotated[
-        list[float],
-        Described("a list of the heights of the joints above the base in m, from the lowest up", "m", form=PLAIN),
-    ],
-    half_widths: Annotated[
-        float | list[float],
-        Described("the distance from the axis of the masses to either edge", "m", form=one_for_each("joint")),
-    ],
-) -> tuple[Joint, ...]:
-    """Return joints at some heights, as files and forms have them.
-
-    Raises
-    ------
-    InputError
-        If there is not one half width for all joints, or one for each.
-    """
-    widths = half_widths if isinstance(half_widths, list) else [half_widths] * len(heights)
-    if len(widths) != len(heights):
-        raise InputError(
-            f"half_widths must be one number, or one for each of the {len(heights)} joints, but {shown(widths)} was "
-            "given.",
-            field="half_widths",
-        )
-    return tuple(Joint(height, width) for height, width in zip(heights, widths, strict=True))
 
 
 def _masses_of(structure: object) -> tuple[Array, Array, Array]:

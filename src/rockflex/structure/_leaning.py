@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite_vector
+from rockflex.foundation.descriptions import Described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._analysis import ModalProperties
 from rockflex.structure._frames import LumpedStructure
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import AssembledStructure, ModifiedStructure, Structure, is_structure
+from rockflex.structure._structure import AssembledStructure, InFile, ModifiedStructure, Structure, is_structure
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -60,6 +61,14 @@ class Leaning(ModifiedStructure, Value):
     ...     props.resisting_moment / wall.rocking().resisting_moment, 12)
     (0.444, 1.0)
     """
+
+    in_file = InFile(
+        key="leaning_masses",
+        words=Described("the mass of each floor that stands on other columns", "kg", form=one_for_each("floor")),
+        value=float | list[float],
+        argument="masses",
+        floors=True,
+    )
 
     structure: Structure
     masses: Array

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from rockflex.foundation.checks import checked_in_range, is_one_of
-from rockflex.foundation.descriptions import Described, described
+from rockflex.foundation.descriptions import PLAIN, Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import ModifiedStructure, Structure, checked_structure
+from rockflex.structure._structure import InFile, ModifiedStructure, Structure, checked_structure
 
 
 def _back_from_base_wall_and_base(alpha: float) -> float:
@@ -68,6 +68,13 @@ class OneSided(ModifiedStructure):
     0.0649
     0.0124
     """
+
+    in_file = InFile(
+        key="one_sided",
+        words=Described(
+            "a table", label="One-sided", form=PLAIN, page="the wall behind it, so that it opens to one side"
+        ),
+    )
 
     structure: Annotated[
         Structure | RockingProperties,

@@ -6,12 +6,12 @@ from typing import Annotated, Any
 import numpy as np
 
 from rockflex.foundation.constants import GRAVITY
-from rockflex.foundation.descriptions import Described, described
+from rockflex.foundation.descriptions import PLAIN, Described, described
 from rockflex.foundation.errors import InputError
 from rockflex.structure._pivot import OnColumns
 from rockflex.structure._rigid_bodies import body_on_columns, rocking_frame
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import ModifiedStructure, Structure, checked_structure
+from rockflex.structure._structure import InFile, ModifiedStructure, Structure, checked_structure
 
 
 @described
@@ -55,6 +55,12 @@ class Podium(ModifiedStructure):
     >>> round(podium.rocking().restitution, 3)
     0.907
     """
+
+    in_file = InFile(
+        key="podium",
+        words=Described("a table", label="Podium", form=PLAIN, page="columns under it that rock together"),
+        floors=True,
+    )
 
     structure: Annotated[
         Structure | None,

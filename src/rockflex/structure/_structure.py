@@ -2,14 +2,16 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, SupportsIndex
+from typing import Any, ClassVar, Protocol, SupportsIndex
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import checked_finite
+from rockflex.foundation.descriptions import Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.language import translated
+from rockflex.foundation.schema import ECCENTRICITY
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.structure._analysis import ModalProperties
@@ -63,10 +65,63 @@ class AssembledStructure(DrawnStructure, ABC):
         return ()
 
 
-class ModifiedStructure(DrawnStructure):
-    """A structure that has the modes of another one, and some other properties."""
+@dataclass(frozen=True, kw_only=True)
+class InFile:
+    """What a wrapper is in a file, and in all that reads one: a key beside the table of the structure it goes around.
 
+    Attributes
+    ----------
+    key
+        The key.
+    words
+        What it is.
+    value
+        The type of its value; None for a table.
+    argument
+        The argument that the value is, or that `makes` makes of it; empty for a table of the wrapper's own arguments.
+    makes, taken
+        The function whose arguments the table has, where these are not the wrapper's own, and the one that returns them
+        for what this made.
+    floors
+        Whether it needs floors, which a rigid block and `RockingProperties` do not have.
+    nothing
+        A value that changes nothing, as None does.
+    """
+
+    key: str
+    words: Described
+    value: Any = None
+    argument: str = ""
+    makes: Callable[..., Any] | None = None
+    taken: Callable[[Any], Any] | None = None
+    floors: bool = False
+    nothing: Any = None
+
+    def arguments(self, value: Any) -> dict[str, Any]:
+        """Return the arguments of the wrapper for a value, or the content of a table."""
+        made = value if self.makes is None else self.makes(**value)
+        return {self.argument: made} if self.argument else dict(value)
+
+    def content(self, arguments: Mapping[str, Any]) -> Any:
+        """Return the value, or the content of the table, for arguments of the wrapper as files have them."""
+        given = arguments[self.argument] if self.argument else dict(arguments)
+        return given if self.taken is None else self.taken(given)
+
+
+class ModifiedStructure(DrawnStructure):
+    """A structure that has the modes of another one, and some other properties: a wrapper."""
+
+    in_file: ClassVar[InFile | None] = None  # None if it is not a key of its own
+    of_properties: ClassVar[bool] = False  # whether `RockingProperties` have its arguments themselves
     structure: Any  # a structure, or RockingProperties where the change needs no more
+
+    @classmethod
+    def around(cls, structure: Structure | RockingProperties, **given: Any) -> Structure | RockingProperties:
+        """Return a structure with a change; of properties that have such values themselves, the changed properties."""
+        made: Any = cls
+        if cls.of_properties and isinstance(structure, RockingProperties):
+            return replace(structure, **given)
+        return made(structure, **given)
 
     def outline_kind(self) -> Kind:
         return self.structure.outline_kind() if isinstance(self.structure, DrawnStructure) else "column"
@@ -224,6 +279,9 @@ class Eccentric(ModifiedStructure):
     (1.118, 1.518)
     """
 
+    in_file = InFile(key="eccentricity", words=ECCENTRICITY, value=float, argument="eccentricity", nothing=0.0)
+    of_properties = True
+
     structure: Structure | RockingProperties
     eccentricity: float
 
@@ -273,6 +331,8 @@ class Restrained(ModifiedStructure):
     >>> round(ratio, 3)
     1.212
     """
+
+    of_properties = True
 
     structure: Structure | RockingProperties
     elements: tuple[BaseElement, ...]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import masked_count, real_or_nan
-from rockflex.foundation.descriptions import Described, described, one_for_each
+from rockflex.foundation.descriptions import PLAIN, Described, described, one_for_each
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
@@ -17,7 +17,7 @@ from rockflex.structure._attachment import YieldingStory
 from rockflex.structure._frames import LumpedStructure
 from rockflex.structure._leaning import Leaning, lumped_structure_of
 from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import ModifiedStructure, Structure
+from rockflex.structure._structure import InFile, ModifiedStructure, Structure
 
 COUPLED = 1e-9  # relative: stiffness between drifts that is attributed to rounding
 
@@ -53,6 +53,12 @@ class YieldingStories(ModifiedStructure, Value):
     >>> rf.simulate(yields, pulse, free_vibration=5.0).ductility.round(2)
     array([2.35, 1.83, 3.26])
     """
+
+    in_file = InFile(
+        key="stories",
+        words=Described("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
+        floors=True,
+    )
 
     structure: Annotated[
         Structure,

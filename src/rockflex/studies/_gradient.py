@@ -13,7 +13,7 @@ from rockflex.foundation.shown import shown
 from rockflex.foundation.values import Value
 from rockflex.models._label import Model, parse_model
 from rockflex.models._quantities import Quantities
-from rockflex.models._tangents import Neighbours, RunTangents, tangents_of_run
+from rockflex.models._tangents import NeighbouringModels, RunTangents, tangents_of_run
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.response._respond import response_of_solution
 from rockflex.response._response import Response
@@ -205,7 +205,7 @@ def follow(
         start=case.start,
         work_limit=case.work_limit,
         parameters=[
-            Neighbours(
+            NeighbouringModels(
                 {step: each.engine for step, each in cases.items()},
                 {step: each.start for step, each in cases.items()},
                 {step: weight / STEP for step, weight in weights.items()},

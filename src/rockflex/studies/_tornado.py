@@ -97,7 +97,7 @@ def tornado(
     structure: RockingStructure | RockingProperties,
     motions: Motions,
     model: str | Model = "MDOF-S",
-    parameters: Mapping[str, Range] | Sequence[str] | None = None,
+    parameters: Mapping[str, Range] | Sequence[str] | float = 0.1,
     *,
     demand: str = "max_rotation",
     **options: Unpack[ManyKeywords],
@@ -113,7 +113,8 @@ def tornado(
         As in `simulate_many`: one record, or many of which the medians are taken.
     parameters
         By name, as in `gradient`, a relative range such as 0.1 for ±10 %, or the two factors at its ends; names alone
-        have ±10 %. ``"scale"`` is the factor on the records. Default: ±10 % of all `parameter_names`.
+        have ±10 %. ``"scale"`` is the factor on the records. A range alone is that of all `parameter_names` that can
+        be so far from their values.
     demand
         Name of a number of `Response`.
     options
@@ -148,6 +149,8 @@ def tornado(
     if not is_one_of(demand, OUTPUTS) or OUTPUTS[demand].quantity in ("flag", "count"):
         raise InputError(f"demand must be a number of a Response, but {shown(demand)} was given.", field="demand")
     subject = Subject(structure, replace(RunOptions.of(**given), all_yield=True))
+    if isinstance(parameters, int | float):
+        parameters = possible_ranges(subject, chosen, float(parameters))
     ranges = _checked_ranges(subject, parameters)
     cases = [(subject, 1.0)]
     for name, ends in ranges.items():
@@ -193,28 +196,44 @@ def tornado(
     )
 
 
+def possible_ranges(subject: Subject, model: Model, share: float) -> dict[str, float]:
+    """Return a relative range for every number of a structure, its ground and its impact law that can have it."""
+    factors, found = _factors("parameters", share), dict[str, float]()
+    for name in subject.names():
+        try:
+            for factor in factors:
+                subject.changed(subject.place_of(name), float(np.log(factor))).case(model)
+        except InputError:  # beyond its range
+            continue
+        found[name] = share
+    return found
+
+
 def _checked_ranges(
-    subject: Subject, parameters: Mapping[str, Range] | Sequence[str] | None
+    subject: Subject, parameters: Mapping[str, Range] | Sequence[str]
 ) -> dict[str, tuple[float, float]]:
     """The factors at the ends of each parameter."""
-    if parameters is None:
-        parameters = subject.names()
     given = dict(parameters) if isinstance(parameters, Mapping) else dict.fromkeys(parameters, 0.1)
     found = dict[str, tuple[float, float]]()
     for name, ends in given.items():
         if name != SCALE:
             subject.place_of(name)
-        try:
-            low, high = (1.0 - ends, 1.0 + ends) if isinstance(ends, int | float) else map(float, ends)
-        except (TypeError, ValueError):
-            low, high = np.nan, np.nan
-        if not 0.0 < low < high < np.inf:
-            raise InputError(
-                f"{name} must have a relative range such as 0.1, below 1, or two rising positive factors such as "
-                f"(0.5, 2), but {shown(ends)} was given.",
-                field="parameters",
-            )
-        found[name] = (low, high)
+        found[name] = _factors(name, ends)
     if not found:
         raise InputError("parameters must be one or more names.", field="parameters")
     return found
+
+
+def _factors(name: str, ends: Any) -> tuple[float, float]:
+    """The factors at the ends of a range."""
+    try:
+        low, high = (1.0 - ends, 1.0 + ends) if isinstance(ends, int | float) else map(float, ends)
+    except (TypeError, ValueError):
+        low, high = np.nan, np.nan
+    if not 0.0 < low < high < np.inf:
+        raise InputError(
+            f"{name} must have a relative range such as 0.1, below 1, or two rising positive factors such as "
+            f"(0.5, 2), but {shown(ends)} was given.",
+            field="parameters",
+        )
+    return low, high

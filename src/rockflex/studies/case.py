@@ -19,6 +19,7 @@ from rockflex.structure.file._object_entries import entry_of_object_table
 from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_entry import KINDS, StructureEntry
 from rockflex.structure.file._structure_tables import Built
+from rockflex.structure.file._wrappers import WRAPPERS
 from rockflex.studies._arguments import (
     InitialState,
     Output,
@@ -47,7 +48,7 @@ from rockflex.studies.running import checked_work_limit
 if TYPE_CHECKING:
     import pandas as pd
 
-_PARTS = ("leaning_masses", "stories", "podium", "joints", "eccentricity", "elements")  # of a structure that is a table
+_PARTS = (*WRAPPERS, "elements")  # of a structure that is a table
 
 
 def _initial_state(given: Any) -> Any:

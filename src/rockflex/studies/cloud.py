@@ -116,7 +116,8 @@ def run_cloud(
         One row per run. `structure`, `motion`, `group` (shared by the components of one recording), `magnitude` and
         `distance_km` where known, `model`, `scale`; measures of the scaled motion: `pga` (m/s²), `pgv` (m/s), `pgd`
         (m), `arias` (m/s), `cav` (m/s), `pva` (m/s²; NaN without a vertical component), `sd_t1` (m) and `sa_t1` (m/s²)
-        at the structure's first period and damping, `sa_t1_5` (m/s²) at 5 % damping,
+        at the structure's first period and damping, `sa_t1_5` (m/s²) at 5 % damping, `sa_avg` (m/s²) and `fiv3` (m/s)
+        as in `GroundMotion.sa_avg` and `GroundMotion.fiv3` for the first period,
         `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and
         p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name; `nominal_limit`, the rotation in rad of
         `nominal_overturning`; the columns of stories that yield, as in

@@ -113,7 +113,7 @@ class RandomPopulation:
         if not any(self._structure.get(key) for key in LATER_KEYS):
             return free
         whole = _checked_random_structure(self._structure, {**values, **random_structure_facts(free)})
-        return rocking_properties_of(whole.build(self._folder) if whole.stories else whole.hold(free))
+        return rocking_properties_of(whole.build(self._folder) if "stories" in whole.wrappers else whole.hold(free))
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
         """Return the ground under a structure for values of the variables."""
@@ -263,7 +263,7 @@ class MonteCarloStudy(LimitKeys, RunsStudySpec):
         InputError
             If a variable or a formula is wrong.
         """
-        taken = dict.fromkeys((*_COLUMNS, *(self.demands or {})), "a column of the table")
+        taken = dict.fromkeys((*_COLUMNS, *self.all_demands), "a column of the table")
         return RandomPopulation(
             RandomVariables(self.variables, taken | FACTS), self.structure, self._folder, self.ground
         )

@@ -1,17 +1,21 @@
 """The specification of a study in a file: the keys that all kinds share."""
 
-from collections.abc import Container, Mapping
-from dataclasses import replace
+import math
+from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self, cast
 
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, field_validator
 
 import rockflex.studies
+from rockflex.foundation.checks import is_one_of
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.fragility._limit_states import check_limit_columns, limit_state_of
 from rockflex.models._label import parse_model
+from rockflex.response._response import Response
+from rockflex.response._sensitivity import DERIVED
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._object_tables import structure_from_table
 from rockflex.structure.file._structure_entry import StructureEntry
@@ -92,11 +96,38 @@ class StudySpec(CaseKeys):
         return added_checksums(type(self))
 
 
+@dataclass(frozen=True)
+class ElasticityOf:
+    """The change of a peak in per cent for 1 % on the scale of the record; NaN of one that is zero or overturned."""
+
+    name: str
+
+    def __call__(self, response: Response) -> float:
+        """Return it for a response with its history."""
+        return math.nan if response.status == "overturned" else response.sensitivity.get(self.name, math.nan)
+
+
+def checked_derived_numbers(given: list[str]) -> list[str]:
+    """Return names of numbers that have derivatives."""
+    for name in given:
+        if not is_one_of(name, DERIVED):
+            raise InputError(
+                f"sensitivities must be among {', '.join(DERIVED)}, but {shown(name)} was given.", field="sensitivities"
+            )
+    check_different_values("sensitivities", given)
+    return given
+
+
 class RunsStudySpec(RunsKeys, StudySpec):
     """A study with models, and with the options of the runs."""
 
     demands: Annotated[dict[str, Any] | None, validator_of_check(lambda given: checked_demands(given, ()))] = Field(
         None, description="in Python only: functions of a Response by the names of their columns, as in `run_cloud`"
+    )
+    sensitivities: Annotated[list[str], validator_of_check(checked_derived_numbers)] = Field(
+        [],
+        description='a list of peaks, such as ["max_rotation"], whose change in per cent for 1 % of the scale is a '
+        "column, sensitivity_max_rotation; a run then takes several times as long",
     )
 
     def checksums(self) -> dict[str, str]:
@@ -123,7 +154,12 @@ class RunsStudySpec(RunsKeys, StudySpec):
             work_limit=self.work_limit
         )  # fmt: skip
         models = tuple(map(parse_model, self.models))
-        return replace(options, models=models, friction=friction, demands=self.demands or {})
+        return replace(options, models=models, friction=friction, demands=self.all_demands)
+
+    @property
+    def all_demands(self) -> dict[str, Callable[[Response], float]]:
+        """The demands, and then the sensitivities, by the names of their columns."""
+        return {**(self.demands or {}), **{f"sensitivity_{name}": ElasticityOf(name) for name in self.sensitivities}}
 
 
 def _given_or_table(given: Any, table: ValidatorFunctionWrapHandler) -> Any:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from rockflex.foundation.csv import table_as_csv
 from rockflex.foundation.language import translated
 from rockflex.motion._columns import record_csv
-from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._suite import Selection
 from rockflex.report.run._report_files import page_as_pdf
 from rockflex.report.run._report_page import run_report_as_html
@@ -29,13 +28,14 @@ from rockflex.web._script import response_script, selection_script
 from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
 from rockflex.web._state import PageState
 from rockflex.web._studies import CLOUD_PAGE, DESIGN_PAGE, StudyPage
-from rockflex.web._uploads import UploadedRecords, clean_upload_name
+from rockflex.web._tornado import TORNADO_PAGE
+from rockflex.web._uploads import UploadedRecords, motion_file_name
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-PAGES = {"cloud": CLOUD_PAGE, "design": DESIGN_PAGE, "record_set": RECORD_SET_PAGE}
+PAGES = {"cloud": CLOUD_PAGE, "design": DESIGN_PAGE, "record_set": RECORD_SET_PAGE, "tornado": TORNADO_PAGE}
 """The kinds of study that the page shows, by their names."""
 
 
@@ -199,7 +199,7 @@ def _history_table(response: Response) -> "pd.DataFrame":
 
 def _record_csv_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     motion = chosen_motion(state.record, uploads)
-    return f"{_motion_file_name(motion)}.csv", record_csv(motion)
+    return f"{motion_file_name(motion)}.csv", record_csv(motion)
 
 
 def _selection(state: PageState, uploads: UploadedRecords) -> Selection:
@@ -217,14 +217,9 @@ def _csv(table: "pd.DataFrame") -> str:
     return table_as_csv(table)
 
 
-def _motion_file_name(motion: GroundMotion) -> str:
-    """The name of a motion as a file name; a unit in it, such as m/s, is not a path."""
-    return clean_upload_name(motion.name.replace("/", "_"))
-
-
 def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     own = state.record.source in ("upload", "folder")
-    name = _motion_file_name(chosen_motion(state.record, uploads)) if own else ""
+    name = motion_file_name(chosen_motion(state.record, uploads)) if own else ""
     return "response.py", response_script(state, name)
 
 
@@ -235,7 +230,7 @@ def _case_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
         records: dict[str, Any] = {"suites": [choice.suite], "include": [choice.name]}
     else:
         motion = chosen_motion(choice, uploads)
-        file = f"{_motion_file_name(motion)}.csv"
+        file = f"{motion_file_name(motion)}.csv"
         records, note = {"files": [record_row(file, motion)]}, f"# with {file}, which the page saves: Record (CSV)\n"
     with errors_as_refusals(""):
         case = Case(

@@ -130,10 +130,9 @@ def record_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
     first = None
     if built is not None and built.properties.n_modes:
         first = 2.0 * np.pi / float(built.properties.omega[0])
-        zeta = float(built.properties.zeta[0])
+        shaking = MeasureInput(motion, float(built.properties.omega[0]), float(built.properties.zeta[0]))
         measures += [
-            _measure_fact(MEASURES["sa_t1"], motion.sa(first, zeta)),
-            _measure_fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05)),
+            _measure_fact(MEASURES[name], MEASURES[name].of(shaking)) for name in ("sa_t1", "sa_t1_5", "sa_avg", "fiv3")
         ]
     return as_json_value(
         {

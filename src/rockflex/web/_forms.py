@@ -22,6 +22,7 @@ from rockflex.structure.file._toml_table import (
     members_of_annotation,
     schema_key_of_field,
 )
+from rockflex.structure.file._wrappers import WRAPPERS
 from rockflex.studies._case_keys import BoucWenTable
 from rockflex.studies._ground_tables import GroundTable
 
@@ -73,14 +74,8 @@ def material_name(given: Mapping[str, Any]) -> str:
     return next((each["title"] for each in MATERIALS if all(given.get(name) == each[name] for name in values)), "")
 
 
-OF_WHOLE = (
-    "eccentricity",
-    "one_sided",
-    "leaning_masses",
-    "stories",
-    "podium",
-    "joints",
-)  # fields of every kind of structure
+OF_WHOLE = sorted(WRAPPERS, key=lambda key: WRAPPERS[key][1].floors)
+"""Fields of every kind of structure, and then of those with floors."""
 FIRST: dict[str, Any] = {
     "structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]),
     "scale": 2.0,
@@ -93,7 +88,10 @@ def forms_of_structures() -> dict[str, Any]:
     return as_json_value(
         {
             "kinds": {name: {"title": table.title, "fields": _form_fields(table)} for name, table in KINDS.items()},
-            "whole": [_form_field(name, StructureEntry.model_fields[name]) for name in OF_WHOLE],
+            "whole": [
+                _form_field(name, StructureEntry.model_fields[name]) | {"floors": WRAPPERS[name][1].floors}
+                for name in OF_WHOLE
+            ],
             "elements": {
                 name: {"title": table.title, "fields": _form_fields(table)} for name, table in ELEMENTS.items()
             },

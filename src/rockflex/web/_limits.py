@@ -190,6 +190,15 @@ def check_size_of_set(cases: Sequence[PreparedCase], motions: Sequence[GroundMot
         raise Refusal({path: message})
 
 
+def check_work_of_tornado(case: PreparedCase, motions: Sequence[GroundMotion], n_cases: int, path: str) -> None:
+    """Refuse a tornado whose runs take too long, individually or together; each case is about as fast as the first."""
+    if n_cases * sum(_checked_work_of_run(case.task(motion), path) for motion in motions) > MAX_STUDY_COST:
+        message = (
+            f"{n_cases * len(motions)} runs take too long for a page. Choose fewer records or fewer modes, or use "
+        )
+        raise Refusal({path: f"{message}rockflex tornado."})
+
+
 def _check_model_of_structure(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     with errors_as_refusals(path):

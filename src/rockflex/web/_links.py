@@ -6,6 +6,7 @@ from typing import Any, cast
 
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._structure_entry import KINDS
+from rockflex.structure.file._wrappers import WRAPPERS
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import MAX_MESSAGES, PageState, parse_page_state
 
@@ -110,9 +111,7 @@ def _can_be_drawn(structure: Any) -> bool:
     elements = structure.get("elements", [])
     tables = [
         *(structure[kind] for kind in kinds),
-        structure.get("stories", {}),
-        structure.get("podium", {}),
-        structure.get("joints", {}),
+        *(structure.get(key, {}) for key, (_, told) in WRAPPERS.items() if told.value is None),
     ]
     return (
         len(kinds) == 1

@@ -11,8 +11,9 @@ from rockflex.fragility._limit_states import LIMIT_STATES, NOMINAL, ROCKING
 from rockflex.structure._attachment import element_parameters
 from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
-from rockflex.structure._jointed import joints_at
+from rockflex.structure._joint import Joint
 from rockflex.structure.file._structure_entry import StructureEntry
+from rockflex.structure.file._wrappers import WRAPPERS, wrapper_arguments
 from rockflex.studies._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.studies._prepared_case import yielding_model_labels
 from rockflex.studies.cloud import CloudStudy
@@ -29,6 +30,7 @@ from rockflex.web._selection import (
 )
 from rockflex.web._state import ROTATION, PageState, PulseChoice, TargetChoice, limit_of_choice
 from rockflex.web._structure import build_page_structure
+from rockflex.web._uploads import motion_file_name
 
 
 def response_script(state: PageState, upload_name: str = "record") -> str:
@@ -134,6 +136,33 @@ def record_set_script(state: PageState, study: Any) -> str:
             "table = rf.check(found, limits)",
             "print(table.to_frame().to_string())",
             'rf.write_report(found, "report.html", structure=structure, limits=limits)',
+        ],
+        yields=yields,
+    )
+
+
+def tornado_script(state: PageState, study: Any) -> str:
+    """Return a program that repeats the tornado of the Response tab, in `bars`."""
+    choice, scale = state.record_set, state.record_set.scale
+    if choice.shown:
+        scaled = [] if scale == 1.0 else [f"motions = [motion.scaled({scale!r}) for motion in motions]"]
+        lines, acting = [_suite_motions_code(choice.suites), *scaled], "motions"
+    else:
+        own = state.record.source in ("upload", "folder")
+        lines, acting = _motion_code_lines(state, motion_file_name(study.motions[0]) if own else ""), "motion"
+    yields = bool(yielding_model_labels([study.model]))
+    extra = f"demand={study.demand!r}, free_vibration={state.free_vibration!r}{_impact_law_code(state)}"
+    # A ground of the structure as it is: a function of each structure would have no numbers to change.
+    extra += "" if state.ground is None else ", ground=ground(structure.rocking())"
+    extra += ", bouc_wen=yielding" if yields else ""
+    return _python_program(
+        state,
+        lines,
+        [
+            f"ranges = {_python_literal(study.ranges)}",
+            f"bars = rf.tornado(structure, {acting}, {study.model!r}, ranges, {extra})",
+            "print(bars.to_frame().to_string())",
+            'rf.save_figure(rf.plot_tornado(bars), "tornado.svg")',
         ],
         yields=yields,
     )
@@ -255,21 +284,9 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
     lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
     made = ", ".join(_python_call(type(each).__name__, element_parameters(each)) for each in elements)
-    if entry.leaning_masses is not None:
-        lines.append(f"structure = rf.Leaning(structure, {_python_literal(entry.leaning_masses)})")
-    if entry.stories is not None:
-        lines.append(
-            f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
-        )
-    if entry.podium is not None:
-        lines.append(f"structure = rf.Podium(structure, {_python_named_arguments(entry.podium.model_dump())})")
-    if entry.joints is not None:
-        joints = ", ".join(_python_call("Joint", vars(each)) for each in joints_at(**entry.joints.model_dump()))
-        lines.append(f"structure = rf.Jointed(structure, [{joints}])")
-    if entry.eccentricity:
-        lines.append(f"structure = rf.Eccentric(structure, {entry.eccentricity!r})")
-    if entry.one_sided is not None:
-        lines.append(f"structure = rf.OneSided(structure, {_python_named_arguments(entry.one_sided.model_dump())})")
+    for key, value in entry.wrappers.items():
+        arguments = _python_named_arguments(wrapper_arguments(key, value))
+        lines.append(f"structure = rf.{WRAPPERS[key][0].__name__}(structure, {arguments})")
     if made:
         lines.append(f"structure = rf.Restrained(structure, [{made}])")
     return lines
@@ -302,7 +319,7 @@ def _python_named_arguments(values: Mapping[str, Any]) -> str:
 def _python_literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _python_literal(value.tolist())
-    if isinstance(value, LumpedMasses | Section):
+    if isinstance(value, LumpedMasses | Section | Joint):
         return _python_call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {_python_literal(each)}' for key, each in value.items())}}}"

@@ -23,6 +23,7 @@ from rockflex.fragility._limit_states import (
 from rockflex.motion._measures import IntensityMeasure, scalable_measures
 from rockflex.motion._recordings import Combination
 from rockflex.response._limit_checks import CheckLimits
+from rockflex.response._outputs import OF_MOTION, REACTIONS
 from rockflex.structure._ground import Ground
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable, toml_problem_place
@@ -84,7 +85,8 @@ def limit_state_labels() -> list[dict[str, Any]]:
     return [each._asdict() for each in LIMIT_STATE_CHOICES]
 
 
-FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
+# In the list; the others follow in their own order.
+FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_avg", "fiv3", "sa_t1", "sd_t1")
 
 
 MeasureName = Annotated[str, check_of_known_names(lambda: [measure.name for measure in _measures_on_page()])]
@@ -281,6 +283,17 @@ class RecordSetChoice(TomlTable):
     rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
 
 
+TornadoDemand = Annotated[str, check_of_known_names(lambda: TORNADO_DEMANDS)]
+TORNADO_DEMANDS = (*OF_MOTION, *REACTIONS[:1])
+
+
+class TornadoChoice(TomlTable):
+    """How far each number of the structure is from its value, and the demand that is compared."""
+
+    share: float = Field(0.1, ge=0.01, le=0.5, description="a relative range from 0.01 to 0.5")
+    demand: TornadoDemand = Field("max_rotation", description="the name of a demand")
+
+
 def limit_of_choice(choice: "CloudChoice | DesignChoice", height: float | None = None) -> float | str:
     """Return the limit of a tab in the form that the library expects; `height` is that of the top in m."""
     if choice.limit == ROTATION:
@@ -335,6 +348,7 @@ class PageState(RunOptionKeys):
     record_set: RecordSetChoice = Field(
         default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
     )
+    tornado: TornadoChoice = Field(default_factory=lambda: TornadoChoice.model_validate({}), description="a table")
     limits: dict[LimitOfCheck, Any] = Field(
         default_factory=dict, description="a table of the arguments of rockflex.CheckLimits"
     )

@@ -220,6 +220,11 @@ def clean_upload_name(name: str) -> str:
     return re.sub(r"[^\w.()+ -]", "_", last)[:80].strip() or "record"
 
 
+def motion_file_name(motion: GroundMotion) -> str:
+    """Return the name of a motion as a file name; a unit in it, such as m/s, is not a path."""
+    return clean_upload_name(motion.name.replace("/", "_"))
+
+
 def _check_upload_size(name: str, content: bytes, field: str) -> None:
     if len(content) > MAX_FILE_BYTES:
         message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {MAX_FILE_BYTES / 1e6:g} MB at most."

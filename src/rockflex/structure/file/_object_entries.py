@@ -6,12 +6,16 @@ from typing import Any
 
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
+from rockflex.structure._podium import Podium
+from rockflex.structure._structure import Restrained
 from rockflex.structure.file._element_tables import ELEMENTS
 from rockflex.structure.file._object_tables import CLASS, arguments_in_table
 from rockflex.structure.file._structure_entry import KINDS
 from rockflex.structure.file._structure_tables import PROFILES
+from rockflex.structure.file._wrappers import WRAPPERS
 
-_WRAPPERS = ("Restrained", "Eccentric", "Jointed", "Leaning", "OneSided", "Podium", "YieldingStories")
+_OF_CLASS = {kind.__name__: told for kind, told in WRAPPERS.values()}
+_AROUND = (Restrained.__name__, *_OF_CLASS)
 
 
 def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
@@ -35,30 +39,25 @@ def entry_of_object_table(table: Any, place: str) -> dict[str, Any]:
 
 def _entry_of_object_table(table: dict[str, Any]) -> dict[str, Any]:
     name: str = table[CLASS]
-    inner = _entry_of_object_table(table["structure"]) if name in _WRAPPERS and "structure" in table else {}
+    inner = _entry_of_object_table(table["structure"]) if name in _AROUND and "structure" in table else {}
     rest: dict[str, Any] = arguments_in_table({key: each for key, each in table.items() if key != "structure"})
     rest.pop("elements", None)
     held = [{"kind": _kind_made(ELEMENTS, each), **arguments_in_table(each)} for each in table.get("elements", [])]
     if elements := [*inner.pop("elements", []), *held]:
         inner["elements"] = elements
-    if eccentricity := rest.pop("eccentricity", 0.0):
-        inner["eccentricity"] = eccentricity
-    if (side := rest.pop("opens", "both")) != "both":
-        inner["one_sided"] = {"restitution": rest.pop("restitution", 0.0), "side": side}
-    if name == "Leaning":
-        inner["leaning_masses"] = rest["masses"]
-    elif name == "YieldingStories":
-        inner["stories"] = rest
-    elif name == "Jointed":
-        inner["joints"] = {f"{key}s": [each[key] for each in rest["joints"]] for key in ("height", "half_width")}
-    elif name == "Podium":
-        inner["podium" if inner else "rocking_frame"] = rest if inner else _frame_of_podium(rest)
-    elif name == "OneSided":
-        inner["one_sided"] = rest
-    elif name == "RockingProperties" and _is_block(rest):
-        inner["block"] = {"width": 2.0 * rest["half_width"], "height": 2.0 * rest["l0r"] / rest["m_tot"]}
-        inner["block"]["mass"] = rest["m_tot"]
-    elif name not in _WRAPPERS:
+    if name == Podium.__name__ and "structure" not in table:
+        inner["rocking_frame"] = _frame_of_podium(rest)
+    elif told := _OF_CLASS.get(name):
+        inner[told.key] = told.content(rest)
+    elif name != Restrained.__name__:
+        if eccentricity := rest.pop("eccentricity", 0.0):
+            inner["eccentricity"] = eccentricity
+        if (side := rest.pop("opens", "both")) != "both":
+            inner["one_sided"] = {"restitution": rest.pop("restitution", 0.0), "side": side}
+        if name == "RockingProperties" and _is_block(rest):
+            inner["block"] = {"width": 2.0 * rest["half_width"], "height": 2.0 * rest["l0r"] / rest["m_tot"]}
+            inner["block"]["mass"] = rest["m_tot"]
+            return inner
         if "bending_stiffness" in rest:
             rest.pop("section", None)  # which gave stiffness and mass
         for key in PROFILES if name == "Beam" else ():

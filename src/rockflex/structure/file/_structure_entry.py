@@ -1,4 +1,4 @@
-"""A structure in a TOML file: leaning mass, stories that yield, its place on the base, and its elements."""
+"""A structure in a TOML file, with the wrappers around it and its elements."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -7,37 +7,20 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import create_model, model_validator
 
-from rockflex.foundation.descriptions import PLAIN, Described, one_for_each
+from rockflex.foundation.descriptions import PLAIN, Described
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.registry import registered_objects, source_checksum
-from rockflex.foundation.schema import Eccentricity
 from rockflex.structure._attachment import PLACE
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._from_matrices import matrix_file_checksum
-from rockflex.structure._jointed import Jointed, joints_at
-from rockflex.structure._leaning import Leaning
-from rockflex.structure._one_sided import OneSided
 from rockflex.structure._outline import has_shapes
-from rockflex.structure._podium import Podium
-from rockflex.structure._rocking import RockingProperties
-from rockflex.structure._structure import Eccentric, Restrained, Structure
-from rockflex.structure._yielding_stories import YieldingStories
+from rockflex.structure._structure import InFile, ModifiedStructure, Restrained
 from rockflex.structure.file._element_tables import ELEMENT_NAMES, AnyElementTable
 from rockflex.structure.file._structure_tables import STRUCTURES, Built, StructureTable
 from rockflex.structure.file._toml_table import TomlTable, table_of
+from rockflex.structure.file._wrappers import WRAPPERS, wrapped
 
 _TABLE_KEY = Described("a table", form=PLAIN)
-if TYPE_CHECKING:
-    StoriesTable = TomlTable
-    JointsTable = TomlTable
-    OneSidedTable = TomlTable
-    PodiumTable = TomlTable
-else:
-    StoriesTable = table_of(YieldingStories, TomlTable, __name__)
-    JointsTable = table_of(joints_at, TomlTable, __name__)
-    OneSidedTable = table_of(OneSided, TomlTable, __name__)
-    PodiumTable = table_of(Podium, TomlTable, __name__)
-
 
 KINDS: dict[str, type[StructureTable]] = STRUCTURES | {
     kind: table_of(made, StructureTable, __name__) for kind, made in registered_objects("structures").items()
@@ -49,6 +32,12 @@ class _Named(TomlTable):
     name: Annotated[str, Described("a name, in quotes", form=PLAIN)] = ""
 
 
+def _wrapper_field(kind: type[ModifiedStructure], told: InFile) -> Any:
+    """Return the field of a wrapper: its value, or the table of the arguments that make it."""
+    value = told.value or table_of(told.makes or kind, TomlTable, __name__)
+    return Annotated[value | None, told.words], None
+
+
 if TYPE_CHECKING:
     _OfKinds = _Named
 else:
@@ -56,57 +45,25 @@ else:
         "_OfKinds",
         __base__=_Named,
         **{kind: (Annotated[table | None, _TABLE_KEY], None) for kind, table in KINDS.items()},
+        **{key: _wrapper_field(*each) for key, each in WRAPPERS.items()},
     )
 
 
 class StructureEntry(_OfKinds):
-    """A structure with its name, leaning mass, yielding stories, its place on the base, and its elements.
+    """A structure with its name, the wrappers around it, and its elements.
 
-    Of the kinds of structures one is a table, and the others are None.
+    Of the kinds of structures one is a table, and the others are None; so are keys of `WRAPPERS` that are not given.
 
     Attributes
     ----------
     name : str
         Empty where none was given.
-    leaning_masses : float, list or None
-        In kg, of each floor; None if all mass stands on the base.
-    stories : StoriesTable or None
-        None if no story yields.
-    podium : PodiumTable or None
-        None if no columns rock under it.
-    joints : JointsTable or None
-        None if it rocks at its base alone.
-    eccentricity : float or None
-        In m; None in the middle of the base.
-    one_sided : OneSidedTable or None
-        None if it opens to both sides.
     elements : list of tables, one of each element
         None if there are none.
     """
 
     gone = {"tendons": 'Write each tendon as a table [[elements]] with kind = "tendon".'}  # noqa: RUF012
 
-    leaning_masses: Annotated[
-        float | list[float] | None,
-        Described("the mass of each floor that stands on other columns", "kg", form=one_for_each("floor")),
-    ] = None
-    stories: Annotated[
-        StoriesTable | None,
-        Described("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
-    ] = None
-    podium: Annotated[
-        PodiumTable | None,
-        Described("a table", label="Podium", form=PLAIN, page="columns under it that rock together"),
-    ] = None
-    joints: Annotated[
-        JointsTable | None,
-        Described("a table", label="Joints above the base", form=PLAIN, page="where it rocks besides its base"),
-    ] = None
-    eccentricity: Eccentricity = None
-    one_sided: Annotated[
-        OneSidedTable | None,
-        Described("a table", label="One-sided", form=PLAIN, page="the wall behind it, so that it opens to one side"),
-    ] = None
     elements: Annotated[
         list[AnyElementTable] | None, Described("a list of tables, each under a heading [[elements]]", form=PLAIN)
     ] = None  # not an empty list, which would be new in the documents of stored studies
@@ -136,6 +93,12 @@ class StructureEntry(_OfKinds):
         table: StructureTable = getattr(self, self.kind)
         return table
 
+    @property
+    def wrappers(self) -> dict[str, Any]:
+        """The values of the keys of wrappers that change something, in the order in which these go around."""
+        values = {key: getattr(self, key) for key in WRAPPERS}
+        return {key: value for key, value in values.items() if value is not None and value != WRAPPERS[key][1].nothing}
+
     def build(self, folder: Path | str = "") -> Built:
         """Build the structure.
 
@@ -158,19 +121,8 @@ class StructureEntry(_OfKinds):
             built = self.table.build(Path(folder))
         except InputError as error:
             raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
-        if self.leaning_masses is not None:
-            built = _built_from_key("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
-        if (stories := self.stories) is not None:
-            built = _built_from_key("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
-        if (podium := self.podium) is not None:
-            built = _built_from_key("podium", lambda: Podium(_floors_of(built), **podium.model_dump()))
-        if (joints := self.joints) is not None:
-            built = _built_from_key("joints", lambda: Jointed(_floors_of(built), joints_at(**joints.model_dump())))
-        if self.eccentricity:
-            e = self.eccentricity
-            built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
-        if (one_sided := self.one_sided) is not None:
-            built = _built_from_key("one_sided", lambda: OneSided(built, **one_sided.model_dump()))
+        for key, value in self.wrappers.items():
+            built = wrapped(key, value, built)
         return self.hold(built)
 
     def hold(self, built: Built) -> Built:
@@ -197,9 +149,7 @@ class StructureEntry(_OfKinds):
             except InputError as error:  # it is outside the base, or at no floor
                 name = error.field if error.field in PLACE else "position"
                 raise InputError(str(error), place=heading, field=f"{row}.{name}") from error
-        return (
-            replace(built, elements=elements) if isinstance(built, RockingProperties) else Restrained(built, elements)
-        )
+        return Restrained.around(built, elements=elements)
 
     def moved(self, path: Callable[[str], str]) -> Self:
         """Return the same structure with the paths of its files from another folder."""
@@ -225,31 +175,6 @@ class StructureEntry(_OfKinds):
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, and everything else that is given, but for the name."""
-        more: dict[str, Any] = {} if self.leaning_masses is None else {"leaning_masses": self.leaning_masses}
-        more |= {"stories": self.stories.model_dump()} if self.stories else {}
-        more |= {"podium": self.podium.model_dump()} if self.podium else {}
-        more |= {"joints": self.joints.model_dump()} if self.joints else {}
-        more |= {"eccentricity": self.eccentricity} if self.eccentricity else {}
-        more |= {"one_sided": self.one_sided.model_dump()} if self.one_sided else {}
+        more = {key: each.model_dump() if isinstance(each, TomlTable) else each for key, each in self.wrappers.items()}
         more |= {"elements": [each.describe() for each in self.elements]} if self.elements else {}
         return {**self.table.values(), **more}
-
-
-def _floors_of(built: Built) -> Structure:
-    if isinstance(built, RockingProperties):
-        raise InputError(
-            "Leaning masses, stories that yield, podiums and joints need floors, which a [properties] or [block] table "
-            "does not have. Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key "
-            "leaning_mass.",
-            field="structure",
-        )
-    return built
-
-
-def _built_from_key(key: str, make: Callable[[], Built]) -> Built:
-    try:
-        return make()
-    except InputError as error:
-        place = f"[{key}]" if key in ("stories", "podium", "joints", "one_sided") else key
-        inner = key if error.field in ("", "masses", "structure") or key == "leaning_masses" else f"{key}.{error.field}"
-        raise InputError(str(error), place=place, field=inner) from error

@@ -1,13 +1,13 @@
 """Design of a base: its width and the tendon that holds it down (Section 4.1)."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Unpack
 
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from rockflex.foundation.checks import checked_in_range, checked_instance, checked_positive
+from rockflex.foundation.checks import checked_in_range, checked_instance, checked_instances, checked_positive
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.json import as_json_value
@@ -18,7 +18,7 @@ from rockflex.models._label import Model
 from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_entry import StructureEntry
 from rockflex.structure.file._toml_table import TomlTable
-from rockflex.studies._arguments import Models, Motions, RockingStructure, type_description
+from rockflex.studies._arguments import Models, Motions, RockingStructure
 from rockflex.studies._case_keys import FreeVibration, validator_of_check
 from rockflex.studies._plan import PER_CHUNK
 from rockflex.studies._result_tables import Columns, Row, Table
@@ -392,13 +392,9 @@ def run_design(
     ['B = 1 m', 'B = 1.5 m']
     """
     given: Any = scales
-    if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(
-            f"tendons must be a sequence of TendonLevel objects, but {type_description(tendons)} was given."
-        )
     run, place = split_keywords({"free_vibration": "settle", **options})
     matrix = study_matrix([structure], motions, models, run)
-    levels = list(tendons)
+    levels = checked_instances("tendons", tendons, TendonLevel)
     designs = designs_of_structure(matrix.structures[0], half_widths, levels, base_mass_per_width)
     plan = DesignPlan(matrix, designs, given, PER_CHUNK)
 

@@ -16,7 +16,7 @@ from rockflex.foundation.shown import shown
 from rockflex.structure._base_element import BaseElement
 from rockflex.structure._elements import Tendon
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import checked_positive_numbers, type_description
+from rockflex.studies._arguments import checked_positive_numbers
 from rockflex.studies._run_matrix import check_different_values
 
 RANGE = ("smallest", "largest", "count")
@@ -110,9 +110,6 @@ def designs_of_structure(
     """
     widths = checked_half_widths(half_widths)
     per_width = checked_positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
-    for place, level in enumerate(levels):
-        if not isinstance(level, TendonLevel):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(f"tendons[{place}] is {type_description(level)}. Expected a TendonLevel.")
     check_different_values("tendons", [level.name for level in levels])
     if levels and properties.tendons:
         raise InputError(

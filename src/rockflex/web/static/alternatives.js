@@ -36,8 +36,7 @@ export function differences(about, from, to) {
     if (JSON.stringify(before) !== JSON.stringify(after)) said.push(`${t(spec.label)} ${shown(spec, before)} → ${shown(spec, after)}`);
   }
   said.push(...without(devices(to), devices(from)).map((each) => `+ ${device(each)}`), ...without(devices(from), devices(to)).map((each) => `− ${device(each)}`));
-  for (const [name, title] of [["eccentricity", t("Eccentricity")], ["leaning_masses", t("Leaning masses")], ["stories", t("Stories")]])
-    if (JSON.stringify(from.structure[name]) !== JSON.stringify(to.structure[name])) said.push(title);
+  for (const { name, label } of about.whole) if (JSON.stringify(from.structure[name]) !== JSON.stringify(to.structure[name])) said.push(t(label));
   for (const [name, title] of [["models", t("Models")], ["ground", t("Ground")], ["impact", t("Impact law")], ["bouc_wen", t("The superstructure yields")]])
     if (JSON.stringify(from[name]) !== JSON.stringify(to[name])) said.push(title);
   return said.join(", ");

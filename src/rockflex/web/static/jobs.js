@@ -67,19 +67,20 @@ const kept = {}; // what a study goes on with, by its kind
 
 export class Study {
   // `key` identifies everything that determines the runs; `show` draws an answer into `results`; `example` returns the
-  // choices of a quick look, so that the tab begins with something to see; `words` are those of the button and the status.
-  constructor(app, kind, { words, key, show, results, example }) {
-    Object.assign(this, { app, kind, words, key, show, results, example });
+  // choices of a quick look, so that the tab begins with something to see; `words` are those of the button and the status;
+  // `suites` returns those whose records the visitor may have to save, by default the study's own choice; `id` begins the ids of a second study on a tab.
+  constructor(app, kind, { words, key, show, results, example, id = "", suites = () => app.state[kind].suites }) {
+    Object.assign(this, { app, kind, words, key, show, results, example, suites });
     this.answer = this.begun = null;
     this.watching = false;
     this.asked = 0; // how many studies and quick looks were started
     // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
     Object.assign(this, kept[kind] ?? { token: null, looked: null, ran: "" });
     delete kept[kind];
-    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, words.run);
-    this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, t("Cancel"));
+    this.run = h("button", { type: "button", class: "primary", id: `${id}run`, onclick: () => this.#start(null) }, words.run);
+    this.cancel = h("button", { type: "button", id: `${id}cancel`, disabled: true, onclick: () => this.#stop() }, t("Cancel"));
     this.bar = h("progress", { max: 1, value: 0, "aria-label": t("Progress") });
-    this.status = h("p", { class: "help", id: "status", role: "status" }, words.none);
+    this.status = h("p", { class: "help", id: `${id}status`, role: "status" }, words.none);
     this.foot = h("p", { class: "error foot", role: "alert" });
     this.element = h("div", {},
       h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
@@ -90,7 +91,7 @@ export class Study {
 
   // Update the tab after a change of the state.
   refresh() {
-    this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
+    this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.suites().includes(each));
     if (this.app.begin === this.kind) {
       this.app.begin = null;
       this.#start(null);

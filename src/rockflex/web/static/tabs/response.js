@@ -16,6 +16,7 @@ import { language, t } from "../texts.js";
 import { explainedOutputs, headed, inUnit, outputIn, outputInUnit, outputUnit, outputsOf, titled, valueIn } from "../units.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
+import { tornado } from "./tornado.js";
 
 const JOINTS = [1, 2, 3].map((k) => [`joint_${k}`, `{model} ${k}`]);
 const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
@@ -80,6 +81,7 @@ export default function responseTab(app) {
     draw();
   });
   const saved = project(app);
+  const matters = tornado(app);
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
       h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
@@ -97,7 +99,8 @@ export default function responseTab(app) {
       h("fieldset", {}, h("legend", {}, t("Runs")), scale, options.element, h("p", { class: "error foot", role: "alert" })),
       limitsForm(app), saved.element),
     results);
-  results.append(downloads(app, [...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ...FILES]));
+  const files = downloads(app, [...reports(app, "report", t("Report (HTML)"), t("Report (PDF)")), ...FILES]);
+  results.append(matters.element, files);
 
   function draw() {
     const [first] = view.models;
@@ -203,11 +206,18 @@ export default function responseTab(app) {
     saved.refresh();
     kept.refresh();
     if (shown) {
+      set.beside.append(matters.element);
       player.pause();
       set.refresh();
-      return;
+    } else {
+      files.before(matters.element);
+      load();
     }
-    load();
+    matters.refresh();
+  }
+  function close(runs) {
+    set?.close(runs);
+    matters.close(runs);
   }
   globalThis.rockflexStage = {
     stage: player.stage,
@@ -220,7 +230,7 @@ export default function responseTab(app) {
     charts: Object.fromEntries(panels),
     loops: { base: loop, element: elements.loop },
   };
-  return { element, refresh, leave: () => player.pause(), close: (runs) => set?.close(runs) };
+  return { element, refresh, leave: () => player.pause(), close };
 }
 
 // The curves of a model in the units of their charts.

@@ -129,7 +129,7 @@ export default function structureTab(app) {
     const given = (spec) => !(values.section && SET_BY_SECTION.includes(spec.name) && values[spec.name] === undefined);
     const focused = fields.contains(document.activeElement) && document.activeElement.closest("[data-path]").dataset.path;
     const specs = kinds[now].fields.filter(given);
-    const own = whole.filter((spec) => ["eccentricity", "one_sided"].includes(spec.name) || !FLOORLESS.includes(now));
+    const own = whole.filter((spec) => !spec.floors || !FLOORLESS.includes(now));
     const wanted = (spec, table) => spec.required || table[spec.name] !== undefined || ["section", ...SET_BY_SECTION].includes(spec.name);
     const left = [...specs.filter((spec) => !wanted(spec, values)).map((spec) => entry(now, spec, values)),
       ...own.filter((spec) => !wanted(spec, structure)).map(ofWhole)];

@@ -22,7 +22,6 @@ from rockflex.engine.tableau import (
     A,
     C,
 )
-from rockflex.engine.tables import Tables
 from rockflex.foundation.arrays import Array
 
 TERMS = 8  # of the polynomial over a step
@@ -33,6 +32,9 @@ class Steps:
 
     phases: list[Any]
     step: tuple[float, float, float, float, float]  # its length, and the accelerations at its start with their changes
+
+    acting: Any  # what is summed from, and a term of it
+    term: Any
 
     def __init__(self, states: int, outputs: int) -> None:
         self.n, self.states = states, up8(states + 2)
@@ -49,9 +51,6 @@ class Steps:
 
     def _events(self, place: int) -> tuple[Event, ...]:
         return self.phases[place].events
-
-    def _tables(self, place: int) -> Tables:
-        return self.phases[place].tables
 
     def nonlinear(self, place: int) -> bool:
         """Whether a phase is not linear."""
@@ -142,15 +141,9 @@ class Steps:
 
         It is the term of order k of a series under the vertical acceleration v, whose term before is another row.
         """
-        tables, shaken, n = self._tables(place), self.phases[place].shaken, self.n
-        count = tables.outputs if outputs else len(self._events(place))
-        x = self.rows[at]
-        table, given = tables.outs if outputs else tables.now, x[: n + 2]
-        if shaken is not None and any(v):
-            fed = v[0] * x[shaken.places] + (v[1] * self.rows[before][shaken.places] if k > 0 else 0.0)
-            table = shaken.outs if outputs else shaken.now
-            given = np.concatenate((given, (v[k] if k < 2 else 0.0,), fed))
-        self.found[to, :count] = table[0, :count] @ given
+        content, count = self.acting(place, v), self.phases[place].outputs if outputs else len(self._events(place))
+        found = (content.outs if outputs else content.now)[0] @ self.term(place, v, k, self.rows[before], self.rows[at])
+        self.found[to, :count] = found[:count]
 
     def observe(self, place: int, a: float, a_v: float, at: int, rates: int, to: int) -> None:
         """Replace the outputs that are not linear."""

@@ -1,17 +1,30 @@
-"""The loops of `march.c` in NumPy: slow, easy to follow, and an independent check of the compiled ones."""
+"""The loops of `march.c` in NumPy: no table of a time step, no bound, and every sample in power series.
+
+So they are slow, easy to follow, and a check of the compiled ones: that these see all events and peaks.
+"""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.steps_twin import Steps
 from rockflex.engine.field import Field
-from rockflex.engine.shaken import ShakenTables
-from rockflex.engine.steps_twin import Steps
-from rockflex.engine.system import Event, LinearPhase, NonlinearPhase, up8
-from rockflex.engine.tables import AHEAD, BLOCK, SLOTS, Tables, tables_of, tables_of_nonlinear_phase
+from rockflex.engine.shaken import terms_of
+from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
+from rockflex.engine.tables import (
+    LONGEST,
+    halvings_of,
+    padded,
+    rates_of,
+    rows_of,
+    shift_of,
+    spectral_radius_bound,
+    steps_of,
+)
 from rockflex.foundation.arrays import Array
 
+BLOCK = 16
 UNKNOWN, ENDS, ASKED = -1, -2, -3
 Climb = tuple[float, float]  # the vertical acceleration at the start of a series, and its change
 
@@ -20,11 +33,20 @@ def PyErr_CheckSignals() -> None:  # noqa: N802
     """Do nothing: the interpreter looks at Ctrl-C by itself."""
 
 
-def lowest_of(r0: float, change: float, first: float, last: float) -> float:
-    """The least value of r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1."""
-    row = np.polynomial.Polynomial((r0, change + first, -2.0 * first - last, first + last))
-    level = [t.real for t in row.deriv().roots() if 0.0 < t.real < 1.0 and t.imag == 0.0]
-    return float(min(row(t) for t in (0.0, 1.0, *level)))
+class Content(NamedTuple):
+    """What a stack of phases is summed from: outputs, and the rates that are no states with the conditions."""
+
+    shift: int
+    outs: Array
+    now: Array
+    places: list[int]  # of the states that a_v multiplies
+
+    @classmethod
+    def of(cls, rates: Array | None, rows: Array, m: int, n: int, places: Sequence[int] = ()) -> "Content":
+        """From rates, if there are any, and rows."""
+        shift = n if rates is None else shift_of(rates)
+        some = rows[:, :0] if rates is None else rates[:, shift:]
+        return cls(shift, padded(rows[:, :m]), padded(np.concatenate((some, rows[:, m:]), axis=1)), list(places))
 
 
 class Peaks:
@@ -91,13 +113,21 @@ class Peaks:
 
 
 class PhaseLoops:
-    """The tables and the outcomes of one phase."""
+    """The content and the outcomes of one phase."""
 
-    def __init__(self, tables: Tables, events: Sequence[Event], h: float) -> None:
-        self.tables, self.h, self.events = tables, h, events
-        self.shaken: ShakenTables | None = None
+    def __init__(self, found: LinearPhase | NonlinearPhase, h: float) -> None:
+        n, self.outputs, self.events, self.halvings = found.C.shape[2], found.d.shape[1], found.events, np.zeros(1)
+        rates, rows, terms = None, rows_of(found), terms_of(found)
+        if isinstance(found, LinearPhase):
+            rates, turn = rates_of(found), spectral_radius_bound(found.A * h)
+            ends = [np.isfinite(steps_of(rates[k, None], h, halvings_of(t, 1.0))).all() for k, t in enumerate(turn)]
+            self.halvings = np.where(ends, halvings_of(turn, LONGEST), -1)
+        self.plain, self.shaken = Content.of(rates, rows, self.outputs, n), None
+        if terms is not None:
+            some = None if rates is None else terms.rates
+            self.shaken = Content.of(some, terms.rows, self.outputs, n, terms.places)
         self.field: Field | None = None
-        self.outcomes: list[Any] = [outcome for event in events for outcome in (event, event.rest)]
+        self.outcomes: list[Any] = [outcome for event in self.events for outcome in (event, event.rest)]
         self.following = [
             UNKNOWN if each is None else ASKED if callable(each.jump) else ENDS if each.target is None else UNKNOWN
             for each in self.outcomes
@@ -105,51 +135,48 @@ class PhaseLoops:
 
 
 class Phases(Steps):
-    """The phases that a run has met, each with the loops over its tables."""
+    """The phases that a run has met, each with the loops over its content."""
 
     def __init__(self, one_sided: Array, states: int) -> None:
         super().__init__(states, one_sided.size)
         self.one_sided, self.which = one_sided > 0.0, 0
         self.phases: list[PhaseLoops] = []
-        self.known: list[int] = []  # of each phase: 0 if its tables are forgotten, 2 if it has those when shaken
+        self.known: list[bool] = []  # of each phase: whether it is forgotten
 
     def add(self, place: int, found: LinearPhase | NonlinearPhase, h: float) -> int:
         """Prepare a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
-        tables = tables_of(found, h) if isinstance(found, LinearPhase) else tables_of_nonlinear_phase(found)
-        self.phases[place : place + 1] = [PhaseLoops(tables, found.events, h)]
-        self.known[place : place + 1] = [1]
-        return sum(each.nbytes for each in tables[4:])
+        self.phases[place : place + 1], self.known[place : place + 1] = [PhaseLoops(found, h)], [True]
+        return self._size(place)
+
+    def _size(self, place: int) -> int:
+        return self.phases[place].plain.now.nbytes + self.phases[place].plain.outs.nbytes
 
     def drop(self, place: int) -> int:
-        """Forget the tables of a phase; the memory that this frees, in bytes."""
-        size = sum(each.nbytes for each in self.phases[place].tables[4:])
-        self.known[place] = 0
-        return size
+        """Forget a phase; the memory that this frees, in bytes."""
+        self.known[place] = False
+        return self._size(place)
 
-    def has_tables(self, place: int, shakes: bool) -> bool:
-        """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
-        return self.known[place] > shakes
-
-    def set_vertical_tables(self, place: int, which: int, shaken: ShakenTables | None) -> int:
-        """Take what a phase has under vertical acceleration; None if it has none."""
-        del which
-        self.phases[place].shaken, self.known[place] = shaken, 2
+    def shake(self, place: int, which: int, found: LinearPhase | NonlinearPhase, h: float) -> int:
+        """Know what a phase has under vertical acceleration: it does so from the first on."""
+        del place, which, found, h
         return 0
 
-    def parts(self, place: int) -> int:
-        """Number of parts of y', whose magnitudes bound the rows."""
-        return self.phases[place].tables.bend.shape[2] - 2
+    def has_tables(self, place: int, shakes: bool) -> bool:
+        """Whether a phase is known, with what it has under vertical acceleration."""
+        del shakes
+        return self.known[place]
 
-    def acts(self, place: int, v: Climb) -> ShakenTables | None:
-        """What a phase has under a vertical acceleration and its change; None if that does not act."""
-        return self.phases[place].shaken if any(v) else None
+    def acting(self, place: int, v: Climb) -> Content:
+        """What a phase has under a vertical acceleration and its change, if that acts in it."""
+        found = self.phases[place]
+        return found.plain if found.shaken is None or not any(v) else found.shaken
 
     def term(self, place: int, v: Climb, k: int, before: Array, x: Array) -> Array:
         """A term of a series: y, a, 1 and, if a vertical acceleration acts, that and what it multiplies."""
-        shaken = self.acts(place, v)
-        if shaken is None:
+        content = self.acting(place, v)
+        if content is self.phases[place].plain:
             return np.asarray(x[: self.n + 2])
-        fed = v[0] * np.asarray(x)[shaken.places] + (v[1] * np.asarray(before)[shaken.places] if k else 0.0)
+        fed = v[0] * np.asarray(x)[content.places] + (v[1] * np.asarray(before)[content.places] if k else 0.0)
         return np.concatenate((x[: self.n + 2], [v[k] if k < 2 else 0.0], fed))
 
     def bind_system(self, place: int, which: int) -> None:
@@ -171,11 +198,11 @@ class Phases(Steps):
 
     def halvings(self, place: int) -> int:
         """How often the step must be halved so that power series converge."""
-        return int(self.phases[place].tables.halvings[self.which])
+        return int(self.phases[place].halvings[self.which])
 
     def shift(self, place: int, v: Climb) -> int:
         """Number of first states whose rates are as many states after them."""
-        return (self.acts(place, v) or self.phases[place].tables).shift
+        return self.acting(place, v).shift
 
     def scale(self, place: int, event: int) -> float:
         """Size of a violation of a condition."""
@@ -205,76 +232,14 @@ class Phases(Steps):
         return bool(rest.row[k] @ x + rest.direct[k] * a + rest.constant[k] + v * more <= 0.0)
 
     def march(self, place: int, a: Array, v: Array, i: int, last: int, y: Array, peaks: Peaks, states: Array) -> int:
-        """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached.
-
-        All samples with vertical acceleration are left to power series.
-        """
-        end = last
-        if len(v) and self.phases[place].shaken is not None:
-            last = next((k for k in range(i, end) if v[k] or v[k + 1]), end)
-        i = self._march(place, a, float(v[i]) if len(v) else 0.0, i, last, y, peaks, states)
-        peaks.stopped = peaks.stopped or i == last < end
-        return i
-
-    def _march(
-        self, place: int, a: Array, rise: float, i: int, last: int, y: Array, peaks: Peaks, states: Array
-    ) -> int:
-        p, k, x = self.phases[place].tables, self.which, np.array(y[: self.n])
-        m, n, h, rows = p.outputs, self.n, self.phases[place].h, p.rows
-        seen = self.acts(place, (rise, 0.0)) or p
-        start, rates = np.array((*x, a[i], 1.0)), n - seen.shift
-        start = self.term(place, (rise, 0.0), 0, start, start)
-        old = np.concatenate(((seen.outs[k] @ start)[:m], (seen.now[k] @ start)[rates : rates + rows - m]))
-        bend = cap = sway = jolt = np.zeros(rows)
-        peaks.stopped = False
-
-        def at_start(table: Array, y: Array, b: float) -> Array:
-            return table[: rows * SLOTS : SLOTS, : n + 1] @ np.array((*y, b)) + table[: rows * SLOTS : SLOTS, -1]
-
-        self._raise(peaks, old[:m], i)
-        first, ahead, final = i, np.zeros(0), x
-        while i < last:
-            if (i - first) % BLOCK == 0:
-                if peaks.kept + BLOCK > peaks.room or peaks.done >= peaks.pauses:
-                    break
-                changes = np.abs(np.diff(a[i : min(i + BLOCK, last) + 1]))
-                parts = np.abs(p.moves[k][: p.bend.shape[2] - 2] @ np.array((*x, a[i], 1.0)))
-                moves = np.array((*parts[:n], changes.sum(), changes.max() / h, *parts[n:]))
-                bend, cap, sway, jolt = (each[k][:rows] @ moves for each in (p.bend, p.cap, p.sway, p.jolt))
-            if (i - first) % AHEAD == 0:
-                ground = np.array(a[i : min(i + AHEAD, last) + 1])
-                ground = np.concatenate((ground, np.zeros(AHEAD + 1 - ground.size)))
-                ahead = p.block[k] @ np.array((*x, *ground, 1.0))
-                final = x + ahead[up8(AHEAD * rows) : up8(AHEAD * rows) + n]
-            which = (i - first) % AHEAD
-            new = ahead[which : AHEAD * rows : AHEAD]
-            after = x + p.step[k][:n] @ np.array((*x, a[i], a[i + 1], 1.0))
-            slopes = [at_start(p.slope[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
-            turns = np.maximum(4.0 * bend - np.abs(new - old), 0.0)
-            excess = turns * (turns / np.maximum(16.0 * bend, 1e-300)) + cap
-            beyond = np.minimum(excess, np.abs(slopes[1] - slopes[0]) * (h / 8.0) + sway)
-            lowest, highest = np.minimum(old, new) - beyond, np.maximum(old, new) + beyond
-            if p.bend.shape[2] - 2 > n:
-                ends = [at_start(p.centre[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
-                lowest = np.maximum(lowest, np.minimum(*ends) - 0.5 * cap - bend)
-                highest = np.minimum(highest, np.maximum(*ends) + 0.5 * cap + bend)
-            ends = [each * h - (new - old - p.direct[k][:rows, 0] * (a[i + 1] - a[i])) for each in slopes]
-            if any(
-                lowest[j] <= 0.0 and lowest_of(old[j], new[j] - old[j], ends[0][j], ends[1][j]) <= jolt[j - m]
-                for j in range(m, rows)
-            ):
-                peaks.stopped = True
-                break
-            above = np.maximum(self._counted(lowest[:m]), self._counted(highest[:m]))
-            if (above > np.maximum(peaks.high[:m], self._counted(new[:m]))).any():
-                peaks.candidates[peaks.kept, : 3 + n + m] = (place, i, 0, *x, *above)
-                peaks.kept += 1
-            x, old, i = final if which == AHEAD - 1 else after, new, i + 1
-            peaks.done += 1
-            self._raise(peaks, old[:m], i)
-            if len(states) > 1:
-                states[i] = x
-        y[:n] = x
+        """Advance over no sample: each is left to a power series."""
+        del states
+        rise = float(v[i]) if len(v) else 0.0
+        start = np.array((*y[: self.n], a[i], 1.0))
+        outs = self.acting(place, (rise, 0.0)).outs[self.which]
+        rows = outs @ self.term(place, (rise, 0.0), 0, start, start)
+        self._raise(peaks, rows[: self.phases[place].outputs], i)
+        peaks.stopped = i < last
         return i
 
     def _counted(self, rows: Array) -> Array:
@@ -289,7 +254,7 @@ class Phases(Steps):
         self, place: int, h: float, a: float, rise: float, v: Climb, y: Array, series: Array, away: Array
     ) -> int:
         """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
-        p, count, first = self.acts(place, v) or self.phases[place].tables, self.events(place), self.states
+        p, count, first = self.acting(place, v), self.events(place), self.states
         now, rates = p.now[self.which], self.n - p.shift
         x, most, calm = np.array(y[: self.n]), np.abs(y[: self.n]), 0
         for k in range(len(series)):
@@ -307,18 +272,16 @@ class Phases(Steps):
 
     def reach(self, place: int, v: Climb, terms: int, series: Array, start: Array, away: Array) -> None:
         """Outputs at the start of an expanded motion, and how far they may get from there."""
-        m, p = self.phases[place].tables.outputs, self.acts(place, v) or self.phases[place].tables
+        m, outs = self.phases[place].outputs, self.acting(place, v).outs[self.which]
         rows = np.array([self.term(place, v, k, series[k - 1], series[k]) for k in range(terms)])
-        start[:m] = (p.outs[self.which] @ rows[0])[:m]
-        away[:m] = (p.most[self.which] @ np.abs(rows[1:]).sum(axis=0))[:m]
+        start[:m], away[:m] = (outs @ rows[0])[:m], (np.abs(outs) @ np.abs(rows[1:]).sum(axis=0))[:m]
 
     def complete(self, place: int, v: Climb, terms: int, series: Array) -> None:
         """Expand the outputs, too."""
-        m, first = self.phases[place].tables.outputs, self.states + up8(self.events(place))
-        p = self.acts(place, v) or self.phases[place].tables
+        m, first = self.phases[place].outputs, self.states + up8(self.events(place))
+        outs = self.acting(place, v).outs[self.which]
         for k in range(terms):
-            row = self.term(place, v, k, series[k - 1], series[k])
-            series[k, first : first + m] = (p.outs[self.which] @ row)[:m]
+            series[k, first : first + m] = (outs @ self.term(place, v, k, series[k - 1], series[k]))[:m]
 
     def evaluate(self, series: Array, terms: int, t: float, out: Array) -> None:
         """Sum the series of the states at t."""
@@ -329,10 +292,7 @@ class Phases(Steps):
         self.evaluate(series, terms, t, out)
         self.evaluate(np.abs(series), terms, t, sizes)
 
-    def advance(self, place: int, a: Array, i: int, y: Array) -> None:
-        """Do nothing: the states of samples that may have higher peaks are those at their starts."""
-
     def magnitudes(self, place: int, v: Climb, order: int, before: Array, x: Array, out: Array) -> None:
         """Multiply the magnitudes of the matrices by those of a term: of the states, of the accelerations and of 1."""
-        magnitude = (self.acts(place, v) or self.phases[place].tables).magnitude[self.which]
-        out[: len(magnitude)] = magnitude @ self.term(place, (abs(v[0]), abs(v[1])), order, before, x)
+        now = np.abs(self.acting(place, v).now[self.which])
+        out[: len(now)] = now @ self.term(place, (abs(v[0]), abs(v[1])), order, before, x)
