@@ -4,7 +4,7 @@ import { attempt, get } from "./api.js";
 import { Chart } from "./chart.js";
 import { verdictOf } from "./checks.js";
 import { explained } from "./choices.js";
-import { clone, decode, h, latest, number } from "./dom.js";
+import { adjust, clone, decode, h, latest, number } from "./dom.js";
 import { ambiguous, box, select, slider } from "./form.js";
 import { Player, UNDER } from "./stage.js";
 import { t } from "./texts.js";
@@ -15,6 +15,7 @@ const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "h
 const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", "stiffness", "column_stiffness", "beam_stiffness"];
 const LEAD = 3; // s before the largest rotation at which the drawing begins to move
 const FAR_FIELD = "fema-p695-far-field";
+const PATIENCE = 60; // ms for which a handle waits for an answer, to move together with the drawing
 const SELDOM = 200; // ms between two values of a text field during a drag: browsers inspect the form after each
 const MEASURED = 24; // px below the handles, for the width
 const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
@@ -119,9 +120,12 @@ export function drawing(app, settle) {
   const { stage } = player;
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dots = new Map(); // by the name of their handle
+  const styles = new WeakMap(); // of each of them
   let view = null;
   let told = 0; // when the fields were last given their values
   let held = null; // the handle that is dragged, as it was before
+  let aim = null; // where it is to be put
+  let late = null; // when it is, whether or not the last answer is there
 
   // Below the drawing, for rows of handles.
   function makeRoom() {
@@ -135,6 +139,19 @@ export function drawing(app, settle) {
     place();
   }
 
+  // Put the handle that is dragged where the pointer is.
+  function follow() {
+    if (aim === null) return;
+    clearTimeout(late);
+    late = setTimeout(waited, PATIENCE);
+    act(held, aim, true);
+    aim = null;
+  }
+  function waited() {
+    late = null;
+    follow();
+  }
+
   function dot(name) {
     const now = () => held ?? handles(app, view).find((each) => each.name === name);
     const element = h("div", {
@@ -142,16 +159,19 @@ export function drawing(app, settle) {
       onpointerdown: (event) => {
         element.setPointerCapture(event.pointerId);
         held = { ...now(), from: [event.clientX, event.clientY], zoom: stage.zoom };
-        stage.held = true;
+        player.hold(true);
       },
       onpointermove: (event) => {
         if (!element.hasPointerCapture(event.pointerId)) return;
         const moved = held.up ? held.from[1] - event.clientY : event.clientX - held.from[0];
-        act(held, held.value + ((held.times ?? 1) * moved) / held.zoom, true);
+        aim = held.value + ((held.times ?? 1) * moved) / held.zoom;
+        if (late === null) follow();
       },
       onlostpointercapture: () => {
-        held = null;
-        stage.held = false;
+        follow();
+        clearTimeout(late);
+        held = late = null;
+        player.hold(false);
         settle();
       },
       onkeydown: (event) => {
@@ -190,18 +210,17 @@ export function drawing(app, settle) {
       const element = dots.get(name);
       const [x, y] = stage.spot(...at);
       const [off, down] = [across.get(name) - x, row * (size() + 2)];
-      element.style.transform = `translate(${x + off}px, ${y + down}px)`; // without a new layout
-      element.style.setProperty("--reach", `${Math.abs(off) > 1 ? Math.hypot(off, down) - 8 : 0}px`);
-      element.style.setProperty("--turn", `${Math.atan2(off, -down)}rad`);
-      element.textContent = sign;
       const length = inUnit(value, "length", 3);
-      element.title = `${label}: ${length}`;
-      element.dataset.value = length; // shown while it is dragged
-      const said = {
-        label, valuenow: tidy(value), valuemin: tidy(range[0]), valuemax: tidy(range[1]), valuetext: length,
-        orientation: up ? "vertical" : "horizontal",
-      };
-      for (const [key, text] of Object.entries(said)) element.setAttribute(`aria-${key}`, text);
+      const reach = Math.abs(off) > 1 ? Math.hypot(off, down) - 8 : 0;
+      if (element.textContent !== String(sign)) element.textContent = sign;
+      const style = `transform: translate(${x + off}px, ${y + down}px); --reach: ${reach}px; --turn: ${Math.atan2(off, -down)}rad`; // without a new layout
+      if (styles.get(element) !== style) element.style.cssText = style;
+      styles.set(element, style);
+      adjust(element, {
+        title: `${label}: ${length}`, "data-value": length, // shown while it is dragged
+        "aria-label": label, "aria-valuenow": tidy(value), "aria-valuemin": tidy(range[0]), "aria-valuemax": tidy(range[1]), "aria-valuetext": length,
+        "aria-orientation": up ? "vertical" : "horizontal",
+      });
     }
   }
   stage.placed = place;
@@ -229,7 +248,11 @@ export function drawing(app, settle) {
     if (run.accelerogram) shaking.set({ xRange: [0, view.end], series: [{ x: decode(run.accelerogram.t), y: decode(run.accelerogram.a).map((a) => a / unit("acceleration").size), color: "muted", width: 1, label: t("acceleration") }] });
     makeRoom();
     player.set(view);
-    place();
+    if (aim === null) {
+      clearTimeout(late);
+      late = null;
+      place();
+    } else follow(); // and places all of them
     figures.replaceChildren(...three(m, run));
     tellVerdict(m, run);
     const now = performance.now();

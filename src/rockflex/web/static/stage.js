@@ -360,12 +360,23 @@ export class Player {
     if (this.time >= this.view.end) this.move(0);
     this.button.textContent = t("Pause");
     this.last = performance.now();
-    const frame = () => {
-      if (!this.playing) return;
-      if (!this.stage.held) this.advance(); // else each answer brings a picture
-      if (this.playing) this.playing = requestAnimationFrame(frame);
-    };
-    this.playing = requestAnimationFrame(frame);
+    this.#next();
+  }
+
+  #next() {
+    this.playing = requestAnimationFrame(() => {
+      if (!this.playing || this.stage.held) return;
+      this.advance();
+      if (this.playing) this.#next();
+    });
+  }
+
+  // While something is dragged each answer brings a picture, and no frame comes between.
+  hold(on) {
+    this.stage.held = on;
+    if (!this.playing) return;
+    cancelAnimationFrame(this.playing);
+    if (!on) this.#next();
   }
 
   // To the time that is due.
