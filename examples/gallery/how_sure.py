@@ -23,6 +23,7 @@ pier = rf.CantileverWithTipMass(
     half_width=1.6,
     damping_ratio=0.03,
 )
+drawing = rf.plot_structure(pier)
 suite = rf.load_suite("fema-p695-far-field")
 
 # %%

@@ -107,14 +107,14 @@ class ElasticityOf:
         return math.nan if response.status == "overturned" else response.sensitivity.get(self.name, math.nan)
 
 
-def checked_derived_numbers(given: list[str]) -> list[str]:
+def checked_derived_numbers(given: list[str] | None) -> list[str] | None:
     """Return names of numbers that have derivatives."""
-    for name in given:
+    for name in given or ():
         if not is_one_of(name, DERIVED):
             raise InputError(
                 f"sensitivities must be among {', '.join(DERIVED)}, but {shown(name)} was given.", field="sensitivities"
             )
-    check_different_values("sensitivities", given)
+    check_different_values("sensitivities", given or ())
     return given
 
 
@@ -124,8 +124,8 @@ class RunsStudySpec(RunsKeys, StudySpec):
     demands: Annotated[dict[str, Any] | None, validator_of_check(lambda given: checked_demands(given, ()))] = Field(
         None, description="in Python only: functions of a Response by the names of their columns, as in `run_cloud`"
     )
-    sensitivities: Annotated[list[str], validator_of_check(checked_derived_numbers)] = Field(
-        [],
+    sensitivities: Annotated[list[str] | None, validator_of_check(checked_derived_numbers)] = Field(
+        None,
         description='a list of peaks, such as ["max_rotation"], whose change in per cent for 1 % of the scale is a '
         "column, sensitivity_max_rotation; a run then takes several times as long",
     )
@@ -159,7 +159,10 @@ class RunsStudySpec(RunsKeys, StudySpec):
     @property
     def all_demands(self) -> dict[str, Callable[[Response], float]]:
         """The demands, and then the sensitivities, by the names of their columns."""
-        return {**(self.demands or {}), **{f"sensitivity_{name}": ElasticityOf(name) for name in self.sensitivities}}
+        return {
+            **(self.demands or {}),
+            **{f"sensitivity_{name}": ElasticityOf(name) for name in self.sensitivities or ()},
+        }
 
 
 def _given_or_table(given: Any, table: ValidatorFunctionWrapHandler) -> Any:
