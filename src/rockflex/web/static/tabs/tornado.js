@@ -85,7 +85,7 @@ function nameOf(about, name) {
   if (name === "scale") return t("Scale factor");
   const [last, ...before] = name.split(".").reverse();
   const [, word, place] = /^(\w+)(?:\[(\d+)\])?/.exec(last);
-  const label = labelIn([about.kinds, about.whole, about.elements, about.laws, about.ground], word);
+  const label = unitLabel([about.kinds, about.whole, about.elements, about.laws, about.ground], word);
   const own = `${label ? t(label) : word.replaceAll("_", " ")}${place ? ` ${Number(place) + 1}` : ""}`;
   const [owner] = before;
   const element = /^elements\[(\d+)\]$/.exec(owner ?? "");
@@ -93,11 +93,11 @@ function nameOf(about, name) {
   return own;
 }
 
-function labelIn(part, name) {
+function unitLabel(part, name) {
   if (part === null || typeof part !== "object") return "";
   if (part.name === name && part.label) return part.label;
   for (const each of Object.values(part)) {
-    const found = labelIn(each, name);
+    const found = unitLabel(each, name);
     if (found) return found;
   }
   return "";
