@@ -269,7 +269,7 @@ def peak_numbers(model: RockingModel, solution: Solution, tracked: TrackedPeaks)
         else float(final[model.layout.rotation]) - model.rest.rotation,
         "balance_ratio": float(balance_ratio(model, right, left)),
         "max_joint_rotation": float(np.max(peaks.get("joint_rotation", 0.0))),
-        "min_joint_force": -float(np.max(peaks.get("joint_relief", 0.0))),
+        "min_joint_force": 0.0 - float(np.max(peaks.get("joint_relief", 0.0))),  # no -0.0
         "settlement": 0.0 if model.springs is None else -float(final[model.layout.heave]),
         "max_permanent_settlement": max_permanent_settlement(model, final),
         "max_slip": float(peaks.get("slip", 0.0)),
