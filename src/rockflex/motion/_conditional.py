@@ -7,11 +7,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex.foundation.arrays import Array
-from rockflex.foundation.checks import check_all_positive, checked_finite, checked_finite_vector, checked_positive
+from rockflex.foundation.checks import (
+    check_all_positive,
+    checked_finite,
+    checked_finite_vector,
+    checked_positive,
+)
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.motion._spectra import TargetSpectrum
 
+MAX_LOG = 700.0  # whose exponential is still a number
 CORNER = 0.109  # s, where the correlation model changes
 SHORT = 0.2  # s
 N_BETWEEN = 201  # periods of a conditional spectrum beside those of its model
@@ -192,9 +198,15 @@ def conditional_spectrum(
     # σ ε ρ is 0 at a model without spread, which has one spectrum only.
     slope = np.divide(spreads, spreads[place], out=np.zeros_like(spreads), where=spreads[place] > 0.0)
     rho = spectral_correlation(nodes, at)
-    ordinates = np.exp(logs + rho * slope * away)
-    ordinates[place] = math.exp(logs[place] + away)
-    return ConditionalSpectrum(nodes, ordinates, spreads * np.sqrt(1.0 - rho**2), at, damping_ratio, name)
+    exponents = logs + rho * slope * away
+    exponents[place] = logs[place] + away
+    if not np.abs(exponents).max() < MAX_LOG:
+        raise InputError(
+            f"The spectrum would be beyond double precision: {away:.4g} from the median in ln S_a, with a dispersion "
+            f"of {spreads[place]:.4g} at {at:g} s. Check epsilon, and that the dispersion is that of ln S_a.",
+            field="sa" if epsilon is None else "epsilon",
+        )
+    return ConditionalSpectrum(nodes, np.exp(exponents), spreads * np.sqrt(1.0 - rho**2), at, damping_ratio, name)
 
 
 def spectral_correlation(first: ArrayLike, second: ArrayLike) -> Array:
@@ -223,16 +235,15 @@ def spectral_correlation(first: ArrayLike, second: ArrayLike) -> Array:
     >>> rf.spectral_correlation([0.05, 0.5, 1.0, 2.0], 1.0).round(3)
     array([0.416, 0.749, 1.   , 0.749])
     """
-    pair: list[Array] = []
-    for name, given in (("first", first), ("second", second)):
-        one = np.asarray(given, dtype=float)
-        if not ((one >= FITTED[0]) & (one <= FITTED[1])).all():
-            raise InputError(
-                f"{name} must be periods from {FITTED[0]:g} to {FITTED[1]:g} s, but {shown(given)} was given.",
-                field=name,
-            )
-        pair.append(one)
-    low, high = np.minimum(*pair), np.maximum(*pair)
+    one, other = (_checked_fitted(name, given) for name, given in (("first", first), ("second", second)))
+    try:
+        np.broadcast_shapes(one.shape, other.shape)
+    except ValueError as error:
+        raise InputError(
+            f"first and second must have shapes that broadcast, but {one.shape} and {other.shape} were given.",
+            field="second",
+        ) from error
+    low, high = np.minimum(one, other), np.maximum(one, other)
     far = 1.0 - np.sin(0.366 * np.log(high / np.maximum(low, CORNER)))  # cos(π/2 - x), exactly 1 at equal periods
     rise = 1.0 / (1.0 + np.exp(100.0 * np.minimum(high, SHORT) - 5.0))
     near = np.where(high < SHORT, 1.0 - 0.105 * (1.0 - rise) * (high - low) / (high - 0.0099), 0.0)
@@ -240,6 +251,20 @@ def spectral_correlation(first: ArrayLike, second: ArrayLike) -> Array:
     between = far + 0.5 * (np.sqrt(base) - base) * (1.0 + np.cos(math.pi * low / CORNER))
     mixed = np.where(high < SHORT, np.minimum(near, between), between)
     return np.where(high < CORNER, near, np.where(low > CORNER, far, mixed))
+
+
+def _checked_fitted(name: str, given: ArrayLike) -> Array:
+    """Return periods for which the correlation was fitted, of any shape."""
+    try:
+        found = np.asarray(given)
+    except (TypeError, ValueError, OverflowError, RecursionError):
+        found = np.array(None)  # rows of different lengths
+    numbers = found.dtype.kind in "fiu" and not np.ma.isMaskedArray(given)
+    if not numbers or not ((found >= FITTED[0]) & (found <= FITTED[1])).all():
+        raise InputError(
+            f"{name} must be periods from {FITTED[0]:g} to {FITTED[1]:g} s, but {shown(given)} was given.", field=name
+        )
+    return found.astype(float)
 
 
 def _checked_spread(name: str, given: ArrayLike, periods: Array) -> Array:
