@@ -4,6 +4,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from datetime import date
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -329,8 +330,8 @@ def motions() -> Calls:
         "target.at": (target.at, {"periods": [0.5]}),
         "target.scaled": (target.scaled, {"factor": 2.0}),
         "read_conditional_spectrum": (
-            rf.read_conditional_spectrum,
-            {"path": "nothing.csv", "period": 1.0, "epsilon": 1.0, "units": "g"},
+            partial(rf.read_conditional_spectrum, epsilon=1.0),
+            {"path": "nothing.csv", "period": 1.0, "units": "g"},
         ),
         "read_target": (rf.read_target, {"path": "nothing.csv", "units": "g"}),
         "ec8_spectrum": (

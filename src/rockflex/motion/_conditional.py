@@ -9,14 +9,15 @@ from numpy.typing import ArrayLike
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.checks import (
     check_all_positive,
-    checked_finite,
     checked_finite_vector,
+    checked_magnitude,
     checked_positive,
 )
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.shown import shown
 from rockflex.motion._spectra import TargetSpectrum
 
+MAX_EPSILON = 20.0  # standard deviations, beyond any hazard
 MAX_LOG = 700.0  # whose exponential is still a number
 CORNER = 0.109  # s, where the correlation model changes
 SHORT = 0.2  # s
@@ -187,14 +188,8 @@ def conditional_spectrum(
     nodes = np.union1d(np.union1d(model.periods, fine), [at])
     logs, spreads = np.log(model.at(nodes)), np.interp(np.log(nodes), np.log(model.periods), spread)
     place = int(np.searchsorted(nodes, at))
-    if sa is None and epsilon is not None:
-        away = checked_finite("epsilon", epsilon, "standard deviations") * spreads[place]
-    elif sa is not None and epsilon is None:
-        away = math.log(checked_positive("sa", sa, "m/s²")) - logs[place]
-    else:
-        raise InputError(
-            f"Give sa, in m/s², or epsilon, but sa={shown(sa)} and epsilon={shown(epsilon)} were given.", field="sa"
-        )
+    check_level(sa, epsilon)
+    away = math.log(sa) - logs[place] if sa is not None else (epsilon or 0.0) * spreads[place]
     # σ ε ρ is 0 at a model without spread, which has one spectrum only.
     slope = np.divide(spreads, spreads[place], out=np.zeros_like(spreads), where=spreads[place] > 0.0)
     rho = spectral_correlation(nodes, at)
@@ -207,6 +202,18 @@ def conditional_spectrum(
             field="sa" if epsilon is None else "epsilon",
         )
     return ConditionalSpectrum(nodes, np.exp(exponents), spreads * np.sqrt(1.0 - rho**2), at, damping_ratio, name)
+
+
+def check_level(sa: float | None, epsilon: float | None) -> None:
+    """Raise an InputError unless one of the ordinate in m/s² and its distance in standard deviations is given."""
+    if (sa is None) == (epsilon is None):
+        raise InputError(
+            f"Give sa, in m/s², or epsilon, but sa={shown(sa)} and epsilon={shown(epsilon)} were given.", field="sa"
+        )
+    if sa is not None:
+        checked_positive("sa", sa, "m/s²")
+    if epsilon is not None:
+        checked_magnitude("epsilon", epsilon, MAX_EPSILON, "standard deviations")
 
 
 def spectral_correlation(first: ArrayLike, second: ArrayLike) -> Array:

@@ -10,17 +10,18 @@ from typing import Literal
 import numpy as np
 
 from rockflex.foundation.arrays import Array
+from rockflex.foundation.checks import checked_positive
 from rockflex.foundation.constants import GRAVITY
 from rockflex.foundation.errors import InputError
 from rockflex.foundation.files import checked_file_path
 from rockflex.foundation.shown import few_texts_shown, shown
 from rockflex.motion import _text
-from rockflex.motion._conditional import ConditionalSpectrum, conditional_spectrum
+from rockflex.motion._conditional import ConditionalSpectrum, check_level, conditional_spectrum
 from rockflex.motion._declared import Declared, declared
 from rockflex.motion._findings import Evidence, quoted_line, settled
 from rockflex.motion._header import MAX_LINE, units_in_line
 from rockflex.motion._labels import parse_label
-from rockflex.motion._spectra import TargetSpectrum
+from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
 from rockflex.motion._units import UNITS, AccelerationUnit, Quantity, Unit, parse_unit
 
 Role = Literal["period", "frequency", "time", "acceleration", "velocity", "displacement"]
@@ -143,6 +144,9 @@ def read_conditional_spectrum(
     >>> rf.read_conditional_spectrum("model.csv", 1.0, epsilon=1.5)
     ConditionalSpectrum('model', S_a(1 s) = 4.353 m/s², 0.05 to 2 s, ζ = 0.05)
     """
+    checked_positive("period", period, "s")  # before a file is looked for
+    check_level(sa, epsilon)
+    checked_spectrum_damping(damping_ratio)
     file, table, columns, periods, order, ordinates = _read_ordinates(path, units)
     spread = [k for k, each in enumerate(table.labels) if SPREAD.search(each)]
     if len(spread) != 1 or columns[spread[0]].role is not None:
