@@ -1,6 +1,5 @@
 """Hybrid systems with closed forms, through the compiled engine and through the same code run as plain Python."""
 
-import importlib.util
 import math
 import os
 import subprocess
@@ -13,30 +12,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import loops_twin
+from engine.as_python import as_python
 from engine.systems import GRAVITY, ball, bilinear, blocks
 from rockflex import InputError, SolverError
 from rockflex.engine import Event, LinearPhase, Run, StateLayout, System
-from rockflex.engine import run as compiled
 
 
 def uncompiled() -> SimpleNamespace:
     """The modules of a run as Python, with the loops in NumPy."""
-    beside = Path(str(compiled.__file__)).parent
-    place = beside if (beside / "run.py").exists() else Path(__file__).parents[2] / "src" / "rockflex" / "engine"
-    names = [f"rockflex.engine.{name}" for name in ("batch", "rest", "field", "flow", "series", "run")]
-    loops = "rockflex.engine.loops"
-    known = {name: sys.modules.pop(name) for name in (*names, loops)}
-    sys.modules[loops] = loops_twin
-    try:
-        for name in names:
-            spec = importlib.util.spec_from_file_location(name, place / f"{name.rpartition('.')[2]}.py")
-            assert spec is not None
-            assert spec.loader is not None
-            sys.modules[name] = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(sys.modules[name])
-        return SimpleNamespace(Run=sys.modules[names[-1]].Run, Batch=sys.modules[names[0]].Batch)
-    finally:
-        sys.modules.update(known)
+    made = as_python("batch", "rest", "field", "flow", "series", "run", instead={"loops": loops_twin})
+    return SimpleNamespace(Run=made["run"].Run, Batch=made["batch"].Batch)
 
 
 @pytest.fixture(scope="module", params=["compiled", "Python"])

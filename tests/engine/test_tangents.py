@@ -1,21 +1,17 @@
 """Derivatives of runs of small hybrid systems: closed forms, and the same pass as plain Python."""
 
-import importlib.util
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from engine.as_python import as_python
 from engine.systems import GRAVITY, ball, bilinear
 from rockflex.engine import Event, LinearPhase, Run, StateLayout, System
-from rockflex.engine import run as beside
 from rockflex.engine.phase_tangent import CENTRAL, Neighbours, brought_to_rest, crossing_of_event, motion_of_phase
 from rockflex.engine.tangent import Trace, follow_tangents
 
 STEP = 2e-3
-NAMES = ("tangent_steps", "tangent_pass", "phase_tangent", "tangent")
 
 
 @pytest.fixture(scope="module", params=["compiled", "Python"])
@@ -23,21 +19,9 @@ def engine(request):
     """The functions of the pass, compiled or run as Python."""
     if request.param == "compiled":
         return motion_of_phase, crossing_of_event, follow_tangents
-    place = Path(str(beside.__file__)).parent
-    place = place if (place / "run.py").exists() else Path(__file__).parents[2] / "src" / "rockflex" / "engine"
-    names = [f"rockflex.engine.{name}" for name in NAMES]
-    known = {name: sys.modules.pop(name) for name in names}
-    try:
-        for name in names:
-            spec = importlib.util.spec_from_file_location(name, place / f"{name.rpartition('.')[2]}.py")
-            assert spec is not None
-            assert spec.loader is not None
-            sys.modules[name] = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(sys.modules[name])
-        made = sys.modules[names[2]]
-        return made.motion_of_phase, made.crossing_of_event, sys.modules[names[3]].follow_tangents
-    finally:
-        sys.modules.update(known)
+    made = as_python("tangent_steps", "tangent_pass", "phase_tangent", "tangent")
+    of_phase = made["phase_tangent"]
+    return of_phase.motion_of_phase, of_phase.crossing_of_event, made["tangent"].follow_tangents
 
 
 def derived(engine, system_of, h, record, *, start=None, vertical=None, free=False, quiet=0):

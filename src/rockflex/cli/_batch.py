@@ -42,6 +42,7 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure.file._structure_file import read_toml_file
 from rockflex.studies._arguments import (
     checked_scale_factors,
+    free_vibration_argument,
     free_vibration_time,
     ground_under_structure,
     parse_scale_range,
@@ -83,7 +84,7 @@ class RunBatch:
 
     def describe(self) -> dict[str, Any]:
         """Return the options of the runs, for a document."""
-        free = "settle" if self.options.free_vibration is None else self.options.free_vibration
+        free = free_vibration_argument(self.options.free_vibration)
         described = {"models": self.models, "scales": self.scales, "free_vibration": free}
         friction = {} if self.friction is None else {"friction": self.friction}
         return described | describe_run_options(self.options, self.ground_values) | friction

@@ -84,6 +84,7 @@ def check(
     from rockflex.cli._select import parse_comma_separated_numbers
     from rockflex.report.run._report_page import write_report
     from rockflex.response._limit_checks import check as check_limits
+    from rockflex.studies._arguments import free_vibration_argument
     from rockflex.studies._simulate import simulate_set
 
     page = None if report is None else checked_path_of_report(report, force=force)
@@ -105,7 +106,7 @@ def check(
             *(loaded.built, [each.scaled(scale) if scale != 1.0 else each for each in batch.motions], labels[0]),
             rule=rule,  # pyright: ignore[reportArgumentType]
             periods=span,
-            free_vibration="settle" if run.free_vibration is None else run.free_vibration,
+            free_vibration=free_vibration_argument(run.free_vibration),
             bouc_wen=run.bouc_wen if "-BW" in labels[0] else None,
             impact=run.impact,
             initial=run.initial,

@@ -65,6 +65,7 @@ def tornado(
     Of several records the medians are compared.
     """
     from rockflex.cli._batch import RunArguments, prepare_batch
+    from rockflex.studies._arguments import free_vibration_argument
     from rockflex.studies._tornado import tornado as run
 
     output.check_output_folder(out, force=force)
@@ -79,12 +80,12 @@ def tornado(
     prepared = prepare_batch(context, asked, histories=0)
     batch, given = prepared.batch, prepared.batch.options
     (factor,) = batch.scales
-    free = "settle" if given.free_vibration is None else given.free_vibration
     with options.naming_flags_in_errors(FLAGS):
         found = run(
             prepared.loaded.built, [each if factor == 1.0 else each.scaled(factor) for each in batch.motions], model,
-            ranges, demand=demand, free_vibration=free, impact=given.impact, bouc_wen=given.bouc_wen,
-            ground=given.ground, initial=given.initial, work_limit=given.work_limit, workers=workers
+            ranges, demand=demand, free_vibration=free_vibration_argument(given.free_vibration), impact=given.impact,
+            bouc_wen=given.bouc_wen, ground=given.ground, initial=given.initial, work_limit=given.work_limit,
+            workers=workers
         )  # fmt: skip
     document = _document(prepared, found)
     if out is not None:

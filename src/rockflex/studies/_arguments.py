@@ -85,6 +85,11 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     return seconds
 
 
+def free_vibration_argument(time: float | None) -> float | Literal["settle"]:
+    """Return the argument that says so many seconds of free vibration; None means until settled."""
+    return "settle" if time is None else time
+
+
 def _law_call(law: type[RuledLaw]) -> str:
     """Return how a law is made, with its restitution if it needs one."""
     needed = [each.name for each in signature(law).parameters.values() if each.default is each.empty]

@@ -20,6 +20,7 @@ from rockflex.structure._base_element import BaseElement
 from rockflex.structure._pivot import Pivot
 from rockflex.structure._rocking import RockingProperties
 from rockflex.studies._arguments import RockingStructure, rocking_properties_of
+from rockflex.studies._moment_rotation import QUARTER_TURN
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -219,7 +220,7 @@ def _capacity_curve(properties: RockingProperties, side: int, factor: float) -> 
     elements, pivot = tuple(each.branched() for each in properties.elements), properties.pivot(side)
     arms = tuple(_arm(each, pivot) for each in properties.elements)
     rest = tuple(element_at_start_of_path(each) for each in elements)
-    points = slow_turn(elements, arms, rest, 0.0, 0.5 * pi, lifts=True)
+    points = slow_turn(elements, arms, rest, 0.0, QUARTER_TURN, lifts=True)
     rotation = np.array([reached for reached, _ in points])
     tension = np.array([[static_tension(*each) for each in zip(elements, at, strict=True)] for _, at in points])
     held = tension.reshape(rotation.size, len(arms)) @ np.array(arms)

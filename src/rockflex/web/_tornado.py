@@ -8,6 +8,7 @@ from rockflex.engine.stops import check_interruption
 from rockflex.foundation.json import as_json_value
 from rockflex.models._label import parse_model
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.studies._arguments import free_vibration_argument
 from rockflex.studies._parameters import SCALE, Subject
 from rockflex.studies._prepared_case import RunOptions
 from rockflex.studies._tornado import Range, Tornado, possible_ranges, tornado
@@ -81,7 +82,7 @@ class TornadoJob(RunsJob):
         with errors_as_refusals("tornado"):
             self.found = tornado(
                 given.structure, given.motions, given.model, given.ranges, demand=given.demand, workers=1,
-                progress=told, free_vibration="settle" if options.free_vibration is None else options.free_vibration,
+                progress=told, free_vibration=free_vibration_argument(options.free_vibration),
                 impact=options.impact, bouc_wen=options.bouc_wen, ground=options.ground, work_limit=options.work_limit
             )  # fmt: skip
 

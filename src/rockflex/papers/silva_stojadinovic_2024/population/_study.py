@@ -17,7 +17,7 @@ from rockflex.models._rocking_model import RockingModel
 from rockflex.motion._suite import Suite
 from rockflex.structure._frames import Frame
 from rockflex.structure._rocking import RockingProperties
-from rockflex.studies._arguments import Motions, checked_motions, free_vibration_time
+from rockflex.studies._arguments import Motions, checked_motions, free_vibration_argument, free_vibration_time
 from rockflex.studies._case_keys import FreeVibration
 from rockflex.studies._modal_combination import COMBINED_QUANTITIES, SecondMode, second_mode_peaks
 from rockflex.studies._plan import ChunkedPlan
@@ -361,7 +361,7 @@ def run_population(
     suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
     free, limit = free_vibration_time(free_vibration), checked_work_limit(work_limit)
     given: dict[str, Any] = {"records": suite, "pairs": count, "seed": start}
-    given["free_vibration"] = "settle" if free is None else free
+    given["free_vibration"] = free_vibration_argument(free)
     given["work_limit"] = "none" if limit is None else limit
     spec = PopulationStudy(**given)
     return run_plan(spec.plan(), workers, progress, dask=dask, folder=folder, study=lambda: spec)
