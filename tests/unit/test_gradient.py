@@ -276,6 +276,19 @@ def test_zero_has_no_relative_change():
     assert "damping_ratio" not in rf.parameter_names(undamped)
 
 
+def test_a_number_at_a_kink_of_the_structure_has_no_derivative():
+    motion = rf.load_suite("fema-p695-far-field")[3].scaled(1.6)
+    names = ["period", "story_height", "elements[0].height"]
+    held = rf.Restrained(FRAME, rf.YieldingDissipator(4e7, 8e4, 0.02, height=3.0))  # just at a floor
+    found = rf.gradient(held, motion, parameters=names)
+    alone = rf.gradient(held, motion, parameters=["period"])
+    assert np.isnan(found["max_rotation"]).tolist() == [False, False, True, True]
+    assert found["max_rotation"][:2] == pytest.approx(alone["max_rotation"], rel=1e-9)
+    assert np.isnan(found.to_frame()["max_rotation"]).tolist() == [False, False, True, True]
+    between = rf.Restrained(FRAME, rf.YieldingDissipator(4e7, 8e4, 0.02, height=3.5))
+    assert np.isfinite(rf.gradient(between, motion, parameters=names)["max_rotation"]).all()
+
+
 def test_models_that_are_integrated_have_no_gradient():
     with pytest.raises(rf.InputError, match="MDOF-C") as caught:
         rf.gradient(FRAME, rf.one_sine_pulse(3.0, 0.8), "MDOF-C", parameters=[])
