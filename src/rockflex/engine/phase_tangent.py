@@ -93,7 +93,7 @@ class Neighbours(NamedTuple):
     kinks: Array
 
     def slopes(self, values: Array, own: Array) -> Array:
-        """Derivatives of numbers in rows, from K values and the own ones, (P, ...); NaN by a parameter at a kink."""
+        """Derivatives of a matrix from K values and the own one, (P, n, ...); NaN by a parameter at a kink."""
         apart = values - own
         found, jumps = _weighed(self.weights, apart), np.abs(_weighed(self.kinks, apart))
         sizes = np.abs(own) + np.abs(found)
@@ -107,7 +107,7 @@ def slopes_of_numbers(phase: LinearPhase, own: PhaseNumbers, neighbours: Neighbo
     """Return the derivatives of the numbers of a phase of one system, with a first axis for P parameters.
 
     What a parameter does not change has no derivative, to the bit. Conditions that some neighbours lack have NaN, and
-    so has everything where the slopes on both sides of the parameter differ.
+    so have rates whose slopes on both sides of the parameter differ.
     """
     m, names = phase.d.shape[1], list(_events_by_name(phase))
     given = PhaseNumbers(*(np.zeros((neighbours.weights.shape[1], *each.shape[1:])) for each in own))
@@ -122,7 +122,8 @@ def slopes_of_numbers(phase: LinearPhase, own: PhaseNumbers, neighbours: Neighbo
             known.rows[:, lacks] = known.rows_v[:, lacks] = np.nan
         for to, values in zip(given, known, strict=True):
             to[among] = values
-    return PhaseNumbers(*(neighbours.slopes(values, base) for values, base in zip(given, own, strict=True)))
+    slopes = (_weighed(neighbours.weights, values - base) for values, base in zip(given[1:], own[1:], strict=True))
+    return PhaseNumbers(neighbours.slopes(given.rates, own.rates), *slopes)
 
 
 def _weighed(weights: Array, values: Array) -> Array:
