@@ -10,6 +10,7 @@ import pytest
 
 import rockflex as rf
 from random_runs import LINEAR, linear_run
+from rockflex.response import Sensitivity
 
 
 def on_springs(springs):
@@ -247,6 +248,10 @@ def test_a_run_near_overturning_is_flagged_with_a_note():
     calm = rf.simulate(block, pulse.scaled(0.8 * scale), "rigid", free_vibration="settle")
     assert not calm.sensitivity.flagged
     assert calm.sensitivity.note == ""
+
+
+def test_a_note_writes_large_numbers_without_exponent():
+    assert "8010 %" in Sensitivity({"max_rotation": -8012.3, "max_base_moment": 11.0}).note
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 from rockflex.engine.solution import Excitation, Solution
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.language import translated
+from rockflex.foundation.number_format import rounded_number
 from rockflex.models._prepared_model import PreparedModel
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
@@ -90,11 +91,11 @@ class Sensitivity(Mapping[str, float]):
             return ""
         worst = max(self.flagged, key=lambda name: math.inf if math.isnan(self[name]) else abs(self[name]))
         return translated(
-            "1 % on the scale of the record moves {peaks} by more than 10 %, {worst} by {percent:.3g} %. A single run "
+            "1 % on the scale of the record moves {peaks} by more than 10 %, {worst} by {percent} %. A single run "
             "says little there: judge by many records, or by the same record at several scales.",
             peaks=", ".join(translated(OUTPUTS[name].symbol) for name in self.flagged),
             worst=translated(OUTPUTS[worst].symbol),
-            percent=abs(self[worst]),
+            percent=rounded_number(abs(self[worst])),
         )
 
 

@@ -123,7 +123,8 @@ def gradient(
         Names of numbers of the structure, as its arguments are called: ``"period"``, ``"damping_ratio"``,
         ``"elements[0].stiffness"``, ``"floor_mass[2]"``; a list of numbers without a place, ``"floor_mass"``, is
         multiplied as a whole. Those of the ground and of the impact law begin with ``"ground."`` and ``"impact."``, as
-        ``"ground.friction"`` and ``"impact.restitution"``. Default: all of `parameter_names`.
+        ``"ground.friction"``, ``"impact.e"`` of `Restitution` and ``"impact.restitution"`` of `AngularMomentum`.
+        Default: all of `parameter_names`.
     options
         `free_vibration`, `impact`, `ground`, `initial` and `work_limit` by name, as in `simulate`.
 
