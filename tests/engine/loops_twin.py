@@ -29,6 +29,11 @@ UNKNOWN, ENDS, ASKED = -1, -2, -3
 Climb = tuple[float, float]  # the vertical acceleration at the start of a series, and its change
 
 
+LOOPS = None  # in `oscillator`, where tests replace the two functions that call it
+TOGETHER = 8
+UU, UV, U0, U1, VU, VV, V0, V1, SQUARE, DRAG, SWAY, SPREAD, SD, SV, FACTORS = range(15)
+
+
 def PyErr_CheckSignals() -> None:  # noqa: N802
     """Do nothing: the interpreter looks at Ctrl-C by itself."""
 

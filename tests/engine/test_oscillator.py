@@ -10,6 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 from engine import loops_twin
+from rockflex import engine
 from rockflex.engine import oscillator as compiled
 
 RECORD = np.random.default_rng(8).normal(size=30)
@@ -27,8 +28,25 @@ def module(request):
     found = importlib.util.module_from_spec(spec)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "rockflex.engine.loops", loops_twin)
+        patch.setattr(engine, "loops", loops_twin)
         spec.loader.exec_module(found)
+    found.Oscillator.march, found.look_together = march_one_by_one, look_everywhere
     return found
+
+
+def march_one_by_one(_, a, factors, motion):
+    """Samples from the two before them; peaks from all of them."""
+    uu, uv, u0, u1, vu, vv, v0, v1 = factors[:8]
+    for k in range(len(a) - 1):
+        u, v = motion[:, k]
+        motion[0, k + 1] = u + uv * v - uu * u - (u0 * a[k] + u1 * a[k + 1])
+        motion[1, k + 1] = v - vv * v - vu * u - (v0 * a[k] + v1 * a[k + 1])
+    factors[-2:] = np.maximum(factors[-2:], np.abs(motion).max(axis=1, initial=0.0))
+
+
+def look_everywhere(a, h, factors, motion, first, last, places):
+    """No sample is left out, whatever the bounds of the compiled loops."""
+    places[:, 0], places[:, 1 : 1 + last - first] = last - first, np.arange(first, last)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.9])
@@ -122,3 +140,12 @@ def test_a_record_without_an_interval_has_no_motion(module, size):
 def test_records_of_different_lengths_are_refused(module):
     with pytest.raises(ValueError, match="shape"):
         module.rotated_peaks(np.ones(3), np.ones(4), 0.01, [5.0], 0.05, [0.0])
+
+
+@pytest.mark.parametrize("rest", [1, 2**14 - 10, 2**14 - 1, 2**14])
+def test_rest_before_a_record_changes_no_peak(rest):
+    """A long record is examined in pieces; where the cut falls does not matter."""
+    omegas = np.geomspace(0.01, 300.0, 11)
+    record = np.concatenate(([0.0], RECORD))
+    later = compiled.peaks(np.concatenate((np.zeros(rest), record)), 0.1, omegas, 0.05)
+    np.testing.assert_array_equal(later, compiled.peaks(record, 0.1, omegas, 0.05))

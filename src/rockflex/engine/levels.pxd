@@ -69,6 +69,7 @@ cdef extern from "march.h" nogil:
         int moving, counted
         const double *floor
     int UNKNOWN, ENDS, ASKED
+    int TOGETHER, UU, UV, U0, U1, VU, VV, V0, V1, SQUARE, DRAG, SWAY, SPREAD, SD, SV, FACTORS
     ctypedef struct Step:
         int width
         double *rates
@@ -107,6 +108,8 @@ cdef extern from "march.h" nogil:
         int (*amplitudes)(int n, const double *modes, int count) noexcept nogil
         void (*bound)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory, double *moves, double *to) noexcept nogil
         int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory, const Py_ssize_t *places, double *to) noexcept nogil
+        void (*oscillate)(const double *a, Py_ssize_t first, Py_ssize_t last, double *factors, double *us, double *vs) noexcept nogil
+        void (*exceed)(const double *a, double h, Py_ssize_t first, Py_ssize_t last, const double *factors, const double *us, const double *vs, Py_ssize_t room, Py_ssize_t *places) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
 cdef const Loops *LOOPS

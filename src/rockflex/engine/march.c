@@ -624,7 +624,8 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
 
 #include "steps.h"
 #include "prepare.h"
+#include "oscillators.h"
 
 const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, workspace, product, expand, evaluate, move, spread,
                                             reach, complete, magnitudes, advance, march, attempt, look, within, bend,
-                                            room, turn, modes_of, amplitudes, bound, prepare};
+                                            room, turn, modes_of, amplitudes, bound, prepare, oscillate, exceed};

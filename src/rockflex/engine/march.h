@@ -125,6 +125,11 @@ typedef struct { /* a phase of which tables are to be made; of `Tables`, and the
     double h;
 } Shape;
 
+enum { TOGETHER = 8 }; /* oscillators that march at once */
+/* Rows of their factors: of the changes of u and u' until the next sample, by u, u' and the accelerations at both; ω²;
+   2ζω; the largest distance of u' from its chord for u'' up to 1; over 1, the damped frequency; the peaks so far. */
+enum { UU, UV, U0, U1, VU, VV, V0, V1, SQUARE, DRAG, SWAY, SPREAD, SD, SV, FACTORS };
+
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
@@ -152,6 +157,9 @@ typedef struct { /* the loops for one level of vector instructions */
                   double *moves, double *to);
     int (*prepare)(const Shape *s, const double *rates, const double *rows, int count, const double *modes, double *memory,
                    const ptrdiff_t *places, double *to);
+    void (*oscillate)(const double *a, ptrdiff_t first, ptrdiff_t last, double *factors, double *us, double *vs);
+    void (*exceed)(const double *a, double h, ptrdiff_t first, ptrdiff_t last, const double *factors, const double *us,
+                   const double *vs, ptrdiff_t room, ptrdiff_t *places);
 } Loops;
 
 /* Those of the best level that this processor has, or of the named one; null if it has not. */

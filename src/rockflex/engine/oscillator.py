@@ -12,7 +12,9 @@ import numpy as np
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.libc.math import atan, cos, exp, fabs, hypot, sin, sqrt
+    from cython.cimports.rockflex.engine import levels
 else:
+    from rockflex.engine import loops as levels
     from rockflex.engine.loops import PyErr_CheckSignals
 
 PI = cython.declare(cython.double, pi)
@@ -23,6 +25,7 @@ STRETCH = cython.declare(cython.Py_ssize_t, 1 << 22)  # samples between two look
 PIECE = cython.declare(cython.Py_ssize_t, 1 << 14)  # samples that are counted at once
 WITHIN = cython.declare(cython.Py_ssize_t, 32)  # samples that a part of one in which the motion is searched counts like
 COARSE = cython.declare(cython.Py_ssize_t, 256)  # samples from which peaks in all directions are first estimated
+BEYOND = cython.declare(cython.double, 1.0 + 1e-14)  # for bounds that hold in spite of rounding
 
 
 def peaks(acceleration, h, frequencies, zeta):
@@ -46,16 +49,16 @@ def peaks(acceleration, h, frequencies, zeta):
     """
     a: cython.double[::1] = np.array(acceleration, dtype=float)
     omegas: cython.double[::1] = np.array(frequencies, dtype=float)
-    motion: cython.double[:, ::1] = np.empty((2, a.shape[0]))
+    motion: cython.double[:, :, ::1] = np.zeros((2, a.shape[0], levels.TOGETHER))
+    factors: cython.double[:, ::1] = np.empty((levels.FACTORS, levels.TOGETHER))
+    places: cython.Py_ssize_t[:, ::1] = np.empty((levels.TOGETHER, min(PIECE, a.shape[0]) + 1), dtype=np.intp)
     found = np.empty((omegas.shape[0], 2))
     out: cython.double[:, ::1] = found
     oscillator: Oscillator = Oscillator(h, zeta)
     i: cython.Py_ssize_t
     with cython.nogil:
-        for i in range(omegas.shape[0]):
-            oscillator.tune(omegas[i])
-            oscillator.peaks(a, motion)
-            out[i, 0], out[i, 1] = oscillator.sd, oscillator.sv
+        for i in range(0, omegas.shape[0], 8):
+            oscillator.peaks(a, omegas[i : i + levels.TOGETHER], factors, motion, places, out[i : i + levels.TOGETHER])
     return found
 
 
@@ -79,7 +82,8 @@ def states(acceleration, h, frequency, zeta, shift):
     a: cython.double[::1] = np.array(acceleration, dtype=float)
     found = np.empty((4, max(a.shape[0] - 1, 0)))
     out: cython.double[:, ::1] = found
-    motion: cython.double[:, ::1] = np.empty((2, a.shape[0]))
+    motion: cython.double[:, :, ::1] = np.zeros((2, a.shape[0], levels.TOGETHER))
+    factors: cython.double[:, ::1] = np.empty((levels.FACTORS, levels.TOGETHER))
     oscillator: Oscillator = Oscillator(h, zeta)
     impulse: cython.double
     step: cython.double
@@ -89,10 +93,12 @@ def states(acceleration, h, frequency, zeta, shift):
     oscillator.tune(frequency)
     impulse, step, ramp = oscillator.responses(shift)
     with cython.nogil:
-        oscillator.march(a, motion[0], motion[1])
+        for k in range(levels.TOGETHER):
+            oscillator.write_factors(factors[:, k])
+        oscillator.march(a, factors, motion)
         for k in range(a.shape[0] - 1):
             slope = (a[k + 1] - a[k]) / oscillator.h
-            out[0, k], out[1, k] = motion[0, k], motion[1, k]
+            out[0, k], out[1, k] = motion[0, k, 0], motion[1, k, 0]
             out[2, k], out[3, k] = oscillator.moved(impulse, step, ramp, out[0, k], out[1, k], a[k], slope)
             if k % PIECE == 0:
                 oscillator.check_stop_request(PIECE)
@@ -125,6 +131,8 @@ def rotated_peaks(first, second, h, frequencies, zeta, angles):
     omegas: cython.double[::1] = np.array(frequencies, dtype=float)
     turns: cython.double[:, ::1] = np.array((np.cos(angles), np.sin(angles)))
     motion: cython.double[:, ::1] = np.empty((5, a.shape[1]))
+    several: cython.double[:, :, ::1] = np.zeros((2, a.shape[1], levels.TOGETHER))
+    factors: cython.double[:, ::1] = np.empty((levels.FACTORS, levels.TOGETHER))
     found = np.zeros((omegas.shape[0], turns.shape[1]))
     out: cython.double[:, ::1] = found
     oscillator: Oscillator = Oscillator(h, zeta)
@@ -132,7 +140,7 @@ def rotated_peaks(first, second, h, frequencies, zeta, angles):
     with cython.nogil:
         for i in range(omegas.shape[0]):
             oscillator.tune(omegas[i])
-            oscillator.rotated(a, turns, motion, out[i])
+            oscillator.rotated(a, turns, factors, several, motion, out[i])
     return found
 
 
@@ -258,115 +266,103 @@ class Oscillator:
 
     @cython.cfunc
     @cython.nogil
+    @cython.exceptval(check=False)
+    def write_factors(self, to: cython.double[:]) -> cython.void:
+        """Write what the march of this oscillator among others takes of it; its peaks are zero."""
+        u1: cython.double = self.ramp / self.h
+        v1: cython.double = self.step / self.h
+        uu: cython.double = self.square * self.step
+        to[levels.UU], to[levels.UV], to[levels.U0], to[levels.U1] = uu, self.impulse, self.step - u1, u1
+        to[levels.VU], to[levels.VV] = self.square * self.impulse, self.drag * self.impulse + uu
+        to[levels.V0], to[levels.V1] = self.impulse - v1, v1
+        to[levels.SQUARE], to[levels.DRAG], to[levels.SWAY], to[levels.SPREAD] = (
+            self.square,
+            self.drag,
+            self.sway,
+            BEYOND / self.damped,
+        )
+        to[levels.SD] = to[levels.SV] = 0.0
+
+    @cython.cfunc
+    @cython.nogil
     @cython.exceptval(-1)
-    def march(self, a: cython.double[::1], us: cython.double[::1], vs: cython.double[::1]) -> cython.int:
-        """Fill displacements and velocities at the samples."""
+    def march(
+        self, a: cython.double[::1], factors: cython.double[:, ::1], motion: cython.double[:, :, ::1]
+    ) -> cython.int:
+        """Fill displacements and velocities at the samples, and raise peaks in the factors to those there."""
+        us: cython.p_double = cython.address(motion[0, 0, 0]) if a.shape[0] else cython.NULL
+        vs: cython.p_double = us + levels.TOGETHER * a.shape[0]
         first: cython.Py_ssize_t = 0
-        if a.shape[0] > 0:
-            us[0] = vs[0] = 0.0
-        while first < a.shape[0]:
-            self.march_piece(a, us, vs, first, min(first + PIECE, a.shape[0] - 1))
-            self.check_stop_request(PIECE)
+        end: cython.Py_ssize_t
+        while first < a.shape[0] - 1:
+            end = min(first + PIECE, a.shape[0] - 1)
+            levels.LOOPS.oscillate(cython.address(a[0]), first, end, cython.address(factors[0, 0]), us, vs)
+            self.check_stop_request(levels.TOGETHER * PIECE // 2)
             first += PIECE
         return 0
 
     @cython.cfunc
+    @cython.inline
     @cython.nogil
-    @cython.exceptval(check=False)
-    def march_piece(
+    @cython.exceptval(-1)
+    def look_after(
         self,
-        a: cython.double[::1],
-        us: cython.double[::1],
-        vs: cython.double[::1],
-        first: cython.Py_ssize_t,
-        last: cython.Py_ssize_t,
-    ) -> cython.void:
-        """Fill them from a sample to another one.
-
-        The change of the state is summed, not the state: over thousands of steps that rounds less.
-        """
-        k: cython.Py_ssize_t
-        u: cython.double = us[first]
-        v: cython.double = vs[first]
-        uu: cython.double = self.square * self.step
-        uv: cython.double = self.impulse
-        u1: cython.double = self.ramp / self.h
-        u0: cython.double = self.step - u1
-        vu: cython.double = self.square * self.impulse
-        vv: cython.double = self.drag * self.impulse + uu
-        v1: cython.double = self.step / self.h
-        v0: cython.double = self.impulse - v1
-        change: cython.double
-        for k in range(first, last):
-            change = (uv * v - (u0 * a[k] + u1 * a[k + 1])) - uu * u
-            v -= (vv * v + (v0 * a[k] + v1 * a[k + 1])) + vu * u
-            u += change
-            us[k + 1], vs[k + 1] = u, v
+        a: cython.double,
+        b: cython.double,
+        u: cython.double,
+        v: cython.double,
+        u1: cython.double,
+        v1: cython.double,
+    ) -> cython.int:
+        """Raise the peaks to those between a sample with (a, u, u') and the next one, with (b, u1, v1)."""
+        slope: cython.double = (b - a) / self.h
+        w: cython.double = self.acceleration(u, v, a)
+        size: cython.double = fabs(w) + fabs(self.quadrature(w, v, slope))  # |u''| is not larger until the next sample
+        if (
+            max(fabs(u), fabs(u1)) + size * self.bend > self.sd or max(fabs(v), fabs(v1)) + size * self.sway > self.sv
+        ) and not self.monotonic(w, v, u1, v1, b):
+            self.inside(u, v, a, slope)
+        return 0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def peaks(self, a: cython.double[::1], motion: cython.double[:, ::1]) -> cython.int:
-        """Find the largest |u| and |u'| during a record, with room of two rows for the motion.
+    def peaks(
+        self,
+        a: cython.double[::1],
+        omegas: cython.double[::1],
+        factors: cython.double[:, ::1],
+        motion: cython.double[:, :, ::1],
+        places: cython.Py_ssize_t[:, ::1],
+        out: cython.double[:, ::1],
+    ) -> cython.int:
+        """Fill the largest |u| and |u'| of a few oscillators during a record, with room for what is found.
 
         The peaks at samples are found first, so that few intervals may have a higher one inside.
         """
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
         first: cython.Py_ssize_t = 0
-        self.sd = self.sv = 0.0
-        self.march(a, motion[0], motion[1])
-        while first < a.shape[0]:
-            self.look_at_samples(motion[0], motion[1], first, min(first + PIECE, a.shape[0]))
-            self.check_stop_request(PIECE)
+        for j in range(levels.TOGETHER):  # the last of fewer is there several times
+            self.tune(omegas[min(j, omegas.shape[0] - 1)])
+            self.write_factors(factors[:, j])
+        self.march(a, factors, motion)
+        while first < a.shape[0] - 1:
+            look_together(a, self.h, factors, motion, first, min(first + PIECE, a.shape[0] - 1), places)
+            self.check_stop_request(levels.TOGETHER * PIECE // 2)
+            for j in range(omegas.shape[0]):
+                self.tune(omegas[j])
+                self.sd, self.sv = factors[levels.SD, j], factors[levels.SV, j]
+                for i in range(1, places[j, 0] + 1):
+                    k = places[j, i]
+                    self.look_after(
+                        a[k], a[k + 1], motion[0, k, j], motion[1, k, j], motion[0, k + 1, j], motion[1, k + 1, j]
+                    )
+                factors[levels.SD, j], factors[levels.SV, j] = self.sd, self.sv
             first += PIECE
-        first = 0
-        while first < a.shape[0]:
-            self.look_between(a, motion[0], motion[1], first, min(first + PIECE, a.shape[0] - 1))
-            self.check_stop_request(2 * PIECE)
-            first += PIECE
-        return 0
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def look_at_samples(
-        self, us: cython.double[::1], vs: cython.double[::1], first: cython.Py_ssize_t, last: cython.Py_ssize_t
-    ) -> cython.void:
-        """Raise the peaks to those at samples."""
-        k: cython.Py_ssize_t
-        sd: cython.double = self.sd
-        sv: cython.double = self.sv
-        for k in range(first, last):
-            sd, sv = max(sd, fabs(us[k])), max(sv, fabs(vs[k]))
-        self.sd, self.sv = sd, sv
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def look_between(
-        self,
-        a: cython.double[::1],
-        us: cython.double[::1],
-        vs: cython.double[::1],
-        first: cython.Py_ssize_t,
-        last: cython.Py_ssize_t,
-    ) -> cython.int:
-        """Raise the peaks to those between samples."""
-        k: cython.Py_ssize_t
-        sd: cython.double = self.sd
-        sv: cython.double = self.sv
-        w: cython.double
-        slope: cython.double
-        size: cython.double
-        for k in range(first, last):
-            slope = (a[k + 1] - a[k]) / self.h
-            w = self.acceleration(us[k], vs[k], a[k])
-            size = fabs(w) + fabs(self.quadrature(w, vs[k], slope))  # |u''| is not larger until the next sample
-            if (
-                max(fabs(us[k]), fabs(us[k + 1])) + size * self.bend > sd
-                or max(fabs(vs[k]), fabs(vs[k + 1])) + size * self.sway > sv
-            ) and not self.monotonic(w, vs[k], us[k + 1], vs[k + 1], a[k + 1]):
-                self.inside(us[k], vs[k], a[k], slope)
-                sd, sv = self.sd, self.sv
+        for j in range(omegas.shape[0]):
+            out[j, 0], out[j, 1] = factors[levels.SD, j], factors[levels.SV, j]
         return 0
 
     @cython.cfunc
@@ -461,18 +457,25 @@ class Oscillator:
         self,
         a: cython.double[:, ::1],
         turns: cython.double[:, ::1],
+        factors: cython.double[:, ::1],
+        several: cython.double[:, :, ::1],
         motion: cython.double[:, ::1],
         peaks: cython.double[::1],
     ) -> cython.int:
         """Raise peaks from zero to the largest |u| in every direction, with room of five rows for the motion."""
+        i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = a.shape[1] - 1
         directions: cython.Py_ssize_t = 2 + peaks.shape[0]
         least: cython.double
         farther: cython.double
         self.check_stop_request(COARSE * directions)
-        self.march(a[0], motion[0], motion[1])
-        self.march(a[1], motion[2], motion[3])
+        for k in range(levels.TOGETHER):
+            self.write_factors(factors[:, k])
+        for i in range(2):
+            self.march(a[i], factors, several)
+            for k in range(last + 1):
+                motion[2 * i, k], motion[2 * i + 1, k] = several[0, k, 0], several[1, k, 0]
         for k in range(last + 1):
             motion[4, k] = hypot(motion[0, k], motion[2, k])
             if k % PIECE == 0:
@@ -546,27 +549,20 @@ class Oscillator:
         s: cython.double
         u: cython.double
         v: cython.double
-        w: cython.double
         u1: cython.double
         v1: cython.double
         a0: cython.double
         a1: cython.double
-        slope: cython.double
-        size: cython.double
         for j in range(peaks.shape[0]):
             c, s = turns[0, j], turns[1, j]
             u, u1 = c * motion[0, k] + s * motion[2, k], c * motion[0, k + 1] + s * motion[2, k + 1]
             if max(fabs(u), fabs(u1)) + farther > peaks[j]:
                 v, v1 = c * motion[1, k] + s * motion[3, k], c * motion[1, k + 1] + s * motion[3, k + 1]
                 a0, a1 = c * a[0, k] + s * a[1, k], c * a[0, k + 1] + s * a[1, k + 1]
-                slope = (a1 - a0) / self.h
-                w = self.acceleration(u, v, a0)
-                size = fabs(w) + fabs(self.quadrature(w, v, slope))
-                if max(fabs(u), fabs(u1)) + size * self.bend > peaks[j] and not self.monotonic(w, v, u1, v1, a1):
-                    # With an infinite velocity only the displacement decides how far the search goes.
-                    self.sd, self.sv = peaks[j], ENDLESS
-                    self.inside(u, v, a0, slope)
-                    peaks[j] = self.sd
+                # With an infinite velocity only the displacement decides how far the search goes.
+                self.sd, self.sv = peaks[j], ENDLESS
+                self.look_after(a0, a1, u, v, u1, v1)
+                peaks[j] = self.sd
         return 0
 
 
@@ -580,3 +576,22 @@ def smallest(values: cython.double[::1]) -> cython.double:
     for j in range(values.shape[0]):
         least = min(least, values[j])
     return least
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def look_together(
+    a: cython.double[::1],
+    h: cython.double,
+    factors: cython.double[:, ::1],
+    motion: cython.double[:, :, ::1],
+    first: cython.Py_ssize_t,
+    last: cython.Py_ssize_t,
+    places: cython.Py_ssize_t[:, ::1],
+) -> cython.void:
+    """For each oscillator, write how many samples there are after which it may exceed its peaks, and which ones."""
+    us: cython.p_double = cython.address(motion[0, 0, 0])
+    vs: cython.p_double = us + levels.TOGETHER * a.shape[0]
+    f: cython.p_double = cython.address(factors[0, 0])
+    levels.LOOPS.exceed(cython.address(a[0]), h, first, last, f, us, vs, places.shape[1], cython.address(places[0, 0]))
