@@ -36,13 +36,14 @@ def table() -> Table:
 def column(n: int, motion: rf.GroundMotion) -> dict[str, str]:
     """The times of a frame of n stories, as texts."""
     structure = frame(n)
+    names = rf.parameter_names(structure)
     calls: dict[str, Callable[[], object]] = {
         PEAKS: lambda: rf.simulate(structure, motion, "MDOF-S", "peaks"),
         "run with history": lambda: rf.simulate(structure, motion, "MDOF-S"),
         "run with history and sensitivity": lambda: rf.simulate(structure, motion, "MDOF-S").sensitivity,
         "gradient, the scale of the record alone": lambda: rf.gradient(structure, motion, "MDOF-S", []),
         "gradient, and one parameter": lambda: rf.gradient(structure, motion, "MDOF-S", ["period"]),
-        f"gradient, and {len(rf.parameter_names(structure))} parameters": lambda: rf.gradient(structure, motion, "MDOF-S"),
+        f"gradient, and {len(names)} parameters": lambda: rf.gradient(structure, motion, "MDOF-S", names),
     }
     spent = {name: np.zeros(ROUNDS + 1) for name in calls}
     for place in range(ROUNDS + 1):  # the first round is not counted
