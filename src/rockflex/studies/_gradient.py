@@ -198,7 +198,7 @@ def follow(
     tangents
         The run and its derivatives.
     """
-    case = replace(subject.case(model), extra=extra)
+    case = subject.case(model, extra)
     nearby = [subject.neighbours(model, name, extra) for name in names]
     shakes = has_vertical_motion(motion)
     places = [case.tracked.peaks.places[name] for name in extra or ()]
