@@ -427,6 +427,13 @@ def fits() -> Calls:
         "quantile": (curve.quantile, {"p": [0.2]}),
         "from_poe": (rf.HazardCurve.from_poe, {"im": [0.1, 0.5], "poe": [0.4, 0.1], "years": 50.0}),
         "annual_rate": (rf.annual_rate, {"hazard": hazard, "fragility": curve}),
+        "HazardBranches": (rf.HazardBranches, {"curves": [hazard, hazard], "weights": [0.4, 0.6]}),
+        "lognormal": (rf.HazardBranches.lognormal, {"mean": hazard, "dispersion": 0.5}),
+        "rate_shares": (
+            rf.rate_shares,
+            {"hazard": rf.HazardBranches.lognormal(hazard, 0.5), "curves": {("a", "M"): curve}, "weights": {"a": 1.0},
+             "years": 50.0, "logarithm": False, "confidence": 0.9},
+        ),
         "risk_targeted_median": (
             rf.risk_targeted_median,
             {"hazard": hazard, "dispersion": 0.4, "target_rate": 1e-2, "allowed_beyond": 0.5},

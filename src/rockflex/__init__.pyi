@@ -6,11 +6,13 @@ from .fragility import BootstrapBand as BootstrapBand
 from .fragility import CloudFit as CloudFit
 from .fragility import CloudFits as CloudFits
 from .fragility import DistributionComparison as DistributionComparison
+from .fragility import HazardBranches as HazardBranches
 from .fragility import HazardCurve as HazardCurve
 from .fragility import LogisticFit as LogisticFit
 from .fragility import LognormalFragility as LognormalFragility
 from .fragility import OutcomeFragility as OutcomeFragility
 from .fragility import OutcomeProbabilities as OutcomeProbabilities
+from .fragility import RateShares as RateShares
 from .fragility import RotationFragility as RotationFragility
 from .fragility import SubsetEstimate as SubsetEstimate
 from .fragility import UnanimousOutcome as UnanimousOutcome
@@ -24,6 +26,7 @@ from .fragility import fit_clouds as fit_clouds
 from .fragility import fit_logistic as fit_logistic
 from .fragility import fit_outcomes as fit_outcomes
 from .fragility import fit_stripes as fit_stripes
+from .fragility import rate_shares as rate_shares
 from .fragility import risk_targeted_median as risk_targeted_median
 from .fragility import subset_simulation as subset_simulation
 from .fragility import variance_shares as variance_shares

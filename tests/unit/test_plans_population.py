@@ -136,6 +136,17 @@ def test_chunks_and_their_sizes_change_nothing(plan, pairs):
     assert longer.head(PAIRS).equals(pairs)
 
 
+def test_structures_alike_are_computed_side_by_side_and_rows_keep_their_order():
+    found = study(pairs=12, runs_per_chunk=24).plan()
+    order = found.in_order_of_work(range(12))
+    stories = [draw_prototype(found.seed, unit, len(found.motions)).n_stories for unit in order]
+    assert stories == sorted(stories, reverse=True)
+    assert sorted(order) == [*range(12)] != list(order)
+    table = found.chunk(0)
+    assert table["pair"].to_pylist() == [*range(12)]
+    assert found.on_threads(3).chunk(0).equals(table)
+
+
 def test_free_vibration_reaches_the_runs(plan):
     longer = run_plan(study(pairs=4, free_vibration=3.0).plan())
     longer = longer[(longer["status_mdof"] != "overturned") & (longer["status_2dof"] != "overturned")]

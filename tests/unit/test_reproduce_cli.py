@@ -223,7 +223,7 @@ def test_jobs_are_planned_once_and_quick_targets_first():
     records = PaperRecords(seeds=10)
     jobs = planned_jobs(TARGETS, records)
     titles = [job.title for job in jobs]
-    assert len(set(titles)) == len(titles) == len(TARGETS) + 2 * 10 + 1 + 6 + 2
+    assert len(set(titles)) == len(titles) == len(TARGETS) + 2 * 10 + 10 + 6 + 2 + 6
     for target in TARGETS:
         assert all(titles.index(piece.name) < titles.index(target) for piece in target_pieces(target, records))
     targets = [job.target for job in jobs if job.piece is None]

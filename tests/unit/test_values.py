@@ -142,6 +142,10 @@ VALUES = {
     rf.BranchEnd: lambda: rf.BranchEnd("open", 0.01, rising=True),
     rf.Ground: lambda: rf.Ground([0.3, math.inf], rf.Springs([-1.0, 2.0], 1e8, 1e6), 2e4),
     rf.GroundMotion: motion,
+    rf.HazardBranches: lambda: rf.HazardBranches.lognormal(VALUES[rf.HazardCurve](), 0.5),
+    rf.RateShares: lambda: rf.rate_shares(
+        VALUES[rf.HazardBranches](), {("a", "M"): rf.LognormalFragility(0.5, 0.4)}
+    ),
     rf.HazardCurve: lambda: rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]),
     rf.History: lambda: response().history,
     rf.RotationFragility: lambda: rf.fit_outcomes(*RUNS).curve(0.01),
@@ -236,6 +240,7 @@ UNHASHABLE = {
     rf.Comparison,
     rf.PopulationStatistics,
     rf.ProjectResults,
+    rf.RateShares,
     rf.Sensitivity,
 }  # they hold tables
 

@@ -45,7 +45,7 @@ def planned_jobs(targets: Sequence[str], records: PaperRecords, *, whole: bool =
 
     def missing(target: str) -> list[Piece]:
         known = planned | records.tables.keys()
-        return [piece for piece in target_pieces(target, records) if piece.name not in known]
+        return [piece for piece in target_pieces(target, records, whole=whole) if piece.name not in known]
 
     waiting = list(targets)
     while waiting:
@@ -91,7 +91,7 @@ def _ready_jobs(waiting: Sequence[Job], records: PaperRecords, count: int) -> li
     """Return the first few jobs whose pieces are there."""
 
     def ready(job: Job) -> bool:
-        return job.piece is not None or all(p.name in records.tables for p in target_pieces(job.target, records))
+        return all(piece.name in records.tables for piece in _pieces_of(job, records))
 
     return [job for job in waiting if ready(job)][:count]
 
@@ -100,8 +100,14 @@ def _records_for(job: Job, records: PaperRecords, processes: int) -> PaperRecord
     """Return the records with the tables that a job needs, and with one thread where there are several processes."""
     if processes == 1:
         return records
-    needed = [] if job.piece is not None else [piece.name for piece in target_pieces(job.target, records)]
-    return replace(records, workers=1, tables={name: records.tables[name] for name in needed})
+    return replace(
+        records, workers=1, tables={piece.name: records.tables[piece.name] for piece in _pieces_of(job, records)}
+    )
+
+
+def _pieces_of(job: Job, records: PaperRecords) -> list[Piece]:
+    """Return the pieces that a job needs; a piece needs none."""
+    return [] if job.piece is not None else target_pieces(job.target, records, whole=job.whole)
 
 
 def _timed_job(job: Job, records: PaperRecords) -> tuple[float, Any]:

@@ -191,7 +191,7 @@ def _checked_resampled_rows(name: str, values: ArrayLike) -> NDArray[Any]:
 
 def _rows_by_recording(recordings: RecordingGroups) -> list[NDArray[np.int64]]:
     """Rows of every group, in the order in which the groups first appear."""
-    codes, n_groups = recordings
+    codes, n_groups = recordings.codes, recordings.n
     if n_groups < 2:
         raise InputError(
             f"groups must hold at least two groups, but all {codes.size} runs belong to {n_groups}.", field="groups"

@@ -6,6 +6,7 @@ their CV3J). Quantities that are not linear in the parameters, such as an annual
 values at parameters drawn from that t distribution.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple, Self
@@ -26,11 +27,13 @@ ONE_RECORDING = "All runs belong to one recording, so nothing is known about the
 class RecordingGroups(NamedTuple):
     """The number of the recording of every run, from 0 in the order in which they first appear, and how many there are.
 
-    A subset of the runs may lack a recording; its parameters without that recording are then those of the subset.
+    A subset of the runs may lack a recording; its parameters without that recording are then those of the subset. What
+    has a row a recording has them in the order of their names, which other runs of the same recordings share.
     """
 
     codes: NDArray[np.int64]
     n: int
+    by_name: NDArray[np.int64]
 
     @classmethod
     def of(cls, groups: ArrayLike) -> Self:
@@ -52,7 +55,7 @@ class RecordingGroups(NamedTuple):
                 f"groups must name the recording of every run, but {int((codes < 0).sum())} names are missing.",
                 field="groups",
             )
-        return cls(codes.astype(np.int64), len(names))
+        return cls(codes.astype(np.int64), len(names), np.argsort(names.astype(str)))
 
     @classmethod
     def beside(cls, groups: ArrayLike | None, **columns: NDArray[np.generic]) -> Self | None:
@@ -63,18 +66,17 @@ class RecordingGroups(NamedTuple):
 
     def some(self, chosen: Bools) -> "RecordingGroups":
         """The recordings of a subset of the runs, with the same numbers."""
-        return RecordingGroups(self.codes[chosen], self.n)
+        return self._replace(codes=self.codes[chosen])
 
     @property
     def held(self) -> Bools:
         """Whether there are runs of each recording, shape (n,)."""
-        return np.bincount(self.codes, minlength=self.n) > 0
+        return np.bincount(self.codes, minlength=self.n)[self.by_name] > 0
 
     def without_each(self, fit: Callable[[Array], Array]) -> Array:
         """Parameters without each recording, shape (n, k); `fit` takes weights of shape (m, n)."""
         step = max(1, _MAX_WEIGHTS // max(1, self.codes.size))
-        numbers = np.arange(self.n)
-        parts = (numbers[first : first + step, None] != self.codes for first in range(0, self.n, step))
+        parts = (self.by_name[first : first + step, None] != self.codes for first in range(0, self.n, step))
         return np.concatenate([fit(part.astype(float)) for part in parts])
 
 
@@ -112,8 +114,19 @@ def band_of_line(
 def sampled_fit_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:
     """Parameters drawn from the t distribution of an estimate, shape (N_SAMPLES, k); the same ones on every call."""
     values, vectors = np.linalg.eigh(covariance) if np.isfinite(covariance).all() else (np.nan, np.eye(len(covariance)))
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    return np.asarray(parameters) + _student_t_sample(len(covariance), n_groups) @ root.T
+    root = vectors * np.sqrt(np.maximum(values, 0.0)) @ vectors.T  # does not depend on the signs of the vectors
+    return np.asarray(parameters) + _student_t_sample(len(covariance), n_groups) @ root
+
+
+def sampled_by_recordings(estimate: Array, without: Array) -> Array:
+    """Values of an estimate drawn from the normal distribution of the jackknife, shape (N_SAMPLES, ...).
+
+    `without` has the estimate without each recording, shape (n_groups, ...). A draw has a score for each recording, so
+    that estimates from the same recordings are drawn together.
+    """
+    count = len(without)
+    moves: Array = math.sqrt((count - 1.0) / count) * (without - without.mean(axis=0))
+    return estimate + np.einsum("sg,g...->s...", _student_t_sample(count, 0), moves)
 
 
 def sampled_band_limits(values: Array, confidence: float) -> tuple[Any, Any]:

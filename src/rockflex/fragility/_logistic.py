@@ -104,6 +104,8 @@ class LogisticFit(HtmlTable, Value):
         Damping ratio of the spectral acceleration or displacement that IM is; None for other measures.
     measured : tuple of float, or None
         Smallest and largest measure of the runs; outside, the curve is extrapolated.
+    without : ndarray, shape (n_groups, 2), or None
+        (b0, b1) without each recording, in the order of their names; None for independent runs.
 
     Examples
     --------
@@ -127,6 +129,7 @@ class LogisticFit(HtmlTable, Value):
     n_groups: int = 0
     damping: float | None = None
     measured: tuple[float, float] | None = None
+    without: Array | None = None
 
     def __repr__(self) -> str:
         rises = f"median={self.median:.4g}, dispersion={self.dispersion:.4g}, " if self.b1 > 0.0 else ""
@@ -184,6 +187,12 @@ class LogisticFit(HtmlTable, Value):
 
         b = _jackknife.sampled_fit_parameters((self.b0, self.b1), self.covariance, self.n_groups)
         return expit(b[:, :1] + b[:, 1:] * np.log(im))
+
+    def probability_without(self, im: Array) -> Array | None:
+        """Probabilities at `im`, shape (m,), without each recording, shape (n_groups, m); None for independent runs."""
+        from scipy.special import expit
+
+        return None if self.without is None else expit(self.without[:, :1] + self.without[:, 1:] * np.log(im))
 
 
 def fit_logistic(
@@ -252,7 +261,7 @@ def fit_logistic_curve(
             f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
             "Look for a single run far from all others."
         )
-    count, replicates = 0, None
+    count, replicates, without = 0, None, None
     if recordings is None:
         covariance = np.linalg.inv(_regression.fisher_information(scaled.x, unit, curve.parameters)[0])
     else:
@@ -262,6 +271,7 @@ def fit_logistic_curve(
         )
         covariance = _jackknife.jackknife_covariance(replicates[recordings.held])
         replicates = scaled.back(replicates)
+        without = replicates[recordings.held]
     b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
     separated = bool(curve.separated[0])
     method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
@@ -289,7 +299,7 @@ def fit_logistic_curve(
         notes.append(translated(_jackknife.ONE_RECORDING))
     events = int(y.sum())
     ends, note = (math.exp(x.min()), math.exp(x.max())), " ".join(notes)
-    fit = LogisticFit(b0, b1, covariance, y.size, events, method, separated, note, count, damping, ends)
+    fit = LogisticFit(b0, b1, covariance, y.size, events, method, separated, note, count, damping, ends, without)
     return fit, replicates
 
 

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.checks import checked_finite_matrix, checked_finite_vector, checked_positive
 from rockflex.foundation.errors import InputError, SolverError
 from rockflex.foundation.html import HtmlTable
-from rockflex.foundation.values import Value
+from rockflex.foundation.values import Value, with_changed_fields
 from rockflex.fragility import _arguments, _jackknife
 from rockflex.fragility._regression import StandardisedLogs, fit_capacity_lines
 
@@ -38,6 +38,9 @@ class LognormalFragility(HtmlTable, Value):
         Number of recordings; 0 if the runs or records were taken as independent.
     damping : float or None
         Damping ratio of the spectral acceleration or displacement that IM is; None for other measures.
+    without : ndarray, shape (n_groups, 2), or None
+        Intercept and slope of ln(IM/median)/beta over ln IM without each recording, in the order of their names; None
+        unless fitted with recordings.
 
     Raises
     ------
@@ -59,6 +62,7 @@ class LognormalFragility(HtmlTable, Value):
     method: str = "given"
     n_groups: int = 0
     damping: float | None = None
+    without: Array | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         median = checked_positive("median", self.median, "the unit of IM")
@@ -113,6 +117,12 @@ class LognormalFragility(HtmlTable, Value):
         score = -math.log(self.median) / self.beta, 1.0 / self.beta
         b = _jackknife.sampled_fit_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
         return ndtr(b[:, :1] + b[:, 1:] * np.log(im))
+
+    def probability_without(self, im: Array) -> Array | None:
+        """Probabilities at `im`, shape (m,), without each recording, shape (n_groups, m); None for independent runs."""
+        from scipy.special import ndtr
+
+        return None if self.without is None else ndtr(self.without[:, :1] + self.without[:, 1:] * np.log(im))
 
     def _score(self, im: ArrayLike) -> Array:
         with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
@@ -185,11 +195,12 @@ def fit_capacities(
     else:
         mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
         method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
-    median, count = math.exp(mean), 0
+    median, count, replicates = math.exp(mean), 0, None
     if recordings is not None:
         replicates = recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta))
         covariance, count = lognormal_fit_covariance(replicates, median, beta), recordings.n
-    return LognormalFragility(median, beta, covariance, x.size, method, count, damping)
+    fit = LognormalFragility(median, beta, covariance, x.size, method, count, damping)
+    return with_changed_fields(fit, without=replicates)
 
 
 def _normal_score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
@@ -305,18 +316,19 @@ def fit_stripes(
             f"The fraction of runs that exceed does not rise with im_levels (slope {b:.3g}), so no lognormal capacity "
             "fits. Check the order of the columns."
         )
-    median, beta, count = math.exp(-a / b), 1.0 / b, 0
+    median, beta, count, replicates = math.exp(-a / b), 1.0 / b, 0, None
     if recordings is None:
         back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
         found = back @ covariance @ back.T
     else:
         kind, both = np.repeat((1.0, -1.0), x.size), np.tile(scaled.x, 2)
         runs = np.concatenate((events, total - events))
-        twice, at = _jackknife.RecordingGroups(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
-        replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
-        found, count = lognormal_fit_covariance(scaled.back(replicates), median, beta), recordings.n
+        twice, at = recordings._replace(codes=np.tile(recordings.codes, 2)), np.asarray(result.params)
+        replicates = scaled.back(twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at)))
+        found, count = lognormal_fit_covariance(replicates, median, beta), recordings.n
     method = "binomial counts, maximum likelihood"
-    return LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
+    fit = LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
+    return with_changed_fields(fit, without=replicates)
 
 
 def _checked_stripe_counts(name: str, values: ArrayLike, least: int) -> Array:

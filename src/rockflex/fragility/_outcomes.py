@@ -113,7 +113,7 @@ class OutcomeFragility(HtmlTable, Value):
         Covariance of the parameters of the total probability, read-only: (b0, b1) of `overturning` and of `rocking`,
         and (c1, c2, ln dispersion) of `rotation`; zero where there is no curve.
     without : ndarray, shape (n_groups, 7), or None
-        The same parameters without each recording; None for independent runs.
+        The same parameters without each recording, in the order of their names; None for independent runs.
     n_groups : int
         Number of recordings; 0 if the runs were taken as independent.
     damping : float or None
@@ -280,6 +280,10 @@ class RotationFragility(Value):
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         fit = self.outcomes
         return self._at(sampled_fit_parameters(_outcome_parameters(fit), fit.covariance, fit.n_groups), im)
+
+    def probability_without(self, im: Array) -> Array | None:
+        """Probabilities at `im`, shape (m,), without each recording, shape (n_groups, m); None for independent runs."""
+        return None if self.outcomes.without is None else self._at(self.outcomes.without, im)
 
     def _at(self, parameters: Array, im: Array) -> Array:
         """Probabilities at `im` for each row of parameters."""

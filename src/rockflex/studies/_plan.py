@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from copy import copy
 from typing import TYPE_CHECKING, ClassVar, Self, SupportsIndex
 
+import numpy as np
+
 from rockflex.foundation.checks import checked_whole_number
 from rockflex.motion._ground_motion import check_horizontal_component
 from rockflex.motion._suite import Suite
@@ -83,6 +85,10 @@ class ChunkedPlan(ABC):
         first = self.per_chunk * number
         return range(first, min(first + self.per_chunk, self.n_units))
 
+    def in_order_of_work(self, units: Sequence[int]) -> Sequence[int]:
+        """Return units in the order in which they are computed, for instance with those alike side by side."""
+        return units
+
     @property
     def checksums(self) -> dict[str, str]:
         """SHA-256 of each record's step and samples, by its name."""
@@ -90,11 +96,17 @@ class ChunkedPlan(ABC):
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
-        units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
-        size = len(units) if self.threads == 1 else -(-len(units) // (PIECES_PER_THREAD * self.threads))
-        pieces = [units[first : first + size] for first in range(0, len(units), size)]
+        pieces = self.pieces(checked_whole_number("number", number, 0, self.n_chunks - 1))
         found = map_runs_in_order(self.results, pieces, self.threads)
-        return arrow_table(found[0] if len(found) == 1 else joined_tables(found), self.columns)
+        table = arrow_table(found[0] if len(found) == 1 else joined_tables(found), self.columns)
+        places = np.argsort(np.concatenate(pieces))
+        return table if (np.diff(places) == 1).all() else table.take(places)
+
+    def pieces(self, number: int) -> list[Sequence[int]]:
+        """Return the units of a chunk in the order in which they are computed, divided among the threads."""
+        units = self.in_order_of_work(self.units_of(number))
+        size = len(units) if self.threads == 1 else -(-len(units) // (PIECES_PER_THREAD * self.threads))
+        return [units[first : first + size] for first in range(0, len(units), size)]
 
     def on_threads(self, threads: int) -> Self:
         """Return the plan whose every chunk is computed on several threads, for studies of few chunks."""

@@ -219,6 +219,18 @@ class PopulationPlan(ChunkedPlan):
             found |= result_columns(suffix=suffix)
         return found | columns_of_kind(COMBINED, float) | {"error": str}
 
+    def in_order_of_work(self, units: Sequence[int]) -> Sequence[int]:
+        """Return units by stories and time step, so that those that share their preparation are in one piece.
+
+        The highest structures, which take the longest, are the first, so that threads end together.
+        """
+
+        def kind(unit: int) -> tuple[int, float, int]:
+            drawn = draw_prototype(self.seed, unit, len(self.motions))
+            return -drawn.n_stories, self.motions[drawn.record].dt, unit
+
+        return sorted(units, key=kind)
+
     def results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
         return joined_tables(
