@@ -95,6 +95,7 @@ def further_run(kind: str, seed: int, *, shaken: bool = False) -> RandomRun:
     model, made = str(rng.choice(["MDOF-S", "MDOF-S", "2DOF-S", "3DOF-S"])), None
     if kind == "joints":
         places = np.sort(rng.uniform(0.2, 0.8, int(rng.integers(1, 3)))) * height
+        places = places[np.unique(np.ceil(places / 3.0), return_index=True)[1]]  # a floor between any two
         joints = [rf.Joint(float(place), float(p.half_width * rng.uniform(0.5, 1.0))) for place in places]
         held = [rf.Tendon(0.1 * weight, weight / 0.02)] if rng.random() < 0.5 else []
         return RandomRun(

@@ -180,6 +180,7 @@ def test_a_saved_response_and_a_file_keep_the_joints(tmp_path: Path) -> None:
     [
         ([rf.Joint(15.0, 1.0)], "joints.0.height"),
         ([rf.Joint(6.0, 1.0), rf.Joint(6.0, 1.0)], "joints.1.height"),
+        ([rf.Joint(6.5, 1.0), rf.Joint(7.0, 1.0)], "joints.1.height"),  # in one story: no mass between them
         (3.0, "joints"),
         (["joint"], "joints"),
     ],

@@ -17,6 +17,8 @@ from rockflex.structure._rocking import RockingProperties
 from rockflex.structure._structure import InFile, ModifiedStructure, Structure
 from rockflex.structure._yielding_stories import YieldingStories
 
+MASSLESS = 1e-9  # of all mass
+
 
 @described
 def joints_at(
@@ -62,7 +64,8 @@ class Jointed(ModifiedStructure):
     Raises
     ------
     InputError
-        If `structure` is none of these, or a joint is not below its top, or not above the one before.
+        If `structure` is none of these, or a joint is not below its top, not above the one before, or no mass is
+        between the two.
 
     Notes
     -----
@@ -133,15 +136,24 @@ class Jointed(ModifiedStructure):
         heights, standing, moving = _masses_of(self.structure)
         floors = base.floors
         shapes = np.zeros((heights.size, 0)) if floors is None else floors.displacement
-        found, levers = list[JointAbove](), [heights]
-        for each in self.joints:
+        found, levers, below, what = list[JointAbove](), [heights], base.m_tot, "the base"
+        for place, each in enumerate(self.joints):
             lever, above = np.maximum(heights - each.height, 0.0), heights >= each.height
             levers.append(lever)
+            mass = float(standing[np.ix_(above, above)].sum())
+            if not below - mass > MASSLESS * base.m_tot:
+                raise InputError(
+                    f"joints must have mass between them, but there is none between {what} and no. {place + 1} at "
+                    f"{each.height:g} m: with both open, that part would move without inertia. Leave one out, or put a "
+                    "floor between them.",
+                    field=f"joints.{place}.height",
+                )
+            below, what = mass, f"no. {place + 1} at {each.height:g} m"
             found.append(
                 JointAbove(
                     each.height,
                     each.half_width,
-                    float(standing[np.ix_(above, above)].sum()),
+                    mass,
                     float((moving @ lever).sum()),
                     [float(other @ moving @ lever) for other in levers],
                     (shapes.T @ moving @ lever) / base.effective_mass,
