@@ -24,7 +24,7 @@ from rockflex.engine import tables
 from rockflex.engine.solvers import SolverPool
 from rockflex.engine.system import System
 
-COUNT, ROUNDS = 100, 11
+COUNT, PAIRS, ROUNDS = 100, 256, 11
 PARTS_WITH_LOCK = ("parts_of_events", "room_of_tables", "roots_and_vectors", "rates_of", "rows_of", "shift_of")
 
 
@@ -88,10 +88,15 @@ def main() -> None:
         structures = population(0)[:COUNT]
         return lambda: rf.simulate_many(structures, motion, workers=1)
 
+    def shared_by_threads() -> Callable[[], object]:
+        plan = rf.PopulationStudy(records={"suites": ["fema-p695-far-field"]}, pairs=PAIRS).plan().on_threads(2)
+        return lambda: [plan.results(piece) for number in range(plan.n_chunks) for piece in plan.pieces(number)]
+
     cases: dict[str, Callable[[], Callable[[], object]]] = {
         f"{COUNT} records on one structure of 5 stories": lambda: lambda: rf.simulate_many(single, records, workers=1),
         f"one record on {COUNT} structures of 2 to 5": of_fresh_structures,
         f"run_population, {COUNT} pairs of 2 to 15": lambda: lambda: rf.run_population(suite, COUNT, workers=1),
+        f"{PAIRS} pairs in the pieces of two threads": shared_by_threads,
     }
     columns = "all, ms", "march", "tables", "outside the engine", "all over march", "lock", "two threads, at best"
     found = Table("", *columns, title="processor time on one thread")

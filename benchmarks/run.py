@@ -13,6 +13,7 @@ import ground
 import nonlinear
 import numpy as np
 import opensees
+import sensitivity
 import studies
 import web_latency
 from rich.console import Console
@@ -49,6 +50,7 @@ def main() -> None:
         console.print(beside)
     console.print(controlled.table(rf.load_suite("fema-p695-far-field")))
     console.print(ground.table(rf.load_suite("fema-p695-far-field")))
+    console.print(sensitivity.table())
     console.print(studies.table())
     console.print(opensees.table())
     console.print(web_latency.table())

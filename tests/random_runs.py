@@ -18,6 +18,7 @@ PEAKS = (
     "min_vertical_reaction",
 )
 LINEAR = ("plain", "elements", "slides", "springs", "elements on springs")
+FURTHER = ("joints", "podium", "yielding springs", "one side", "stories", "leaning", "ties")
 NONLINEAR = ("2DOF-C", "MDOF-C", "3DOF-C-SI", "3DOF-C-E", "rigid-C", "2DOF-S-BW", "2DOF-C-BW", "1DOF-fixed-BW")
 
 
@@ -79,6 +80,77 @@ def linear_run(kind: str, seed: int, *, shaken: bool = False) -> RandomRun:
         options["free_vibration"] = 3.0  # tendons without damping may swing for ever
         structure = restrained(structure, some)
     return RandomRun(structure, motion, model, options)
+
+
+def further_run(kind: str, seed: int, *, shaken: bool = False) -> RandomRun:
+    """A run of a simplified model of a kind of `FURTHER`, perhaps with vertical acceleration."""
+    rng = np.random.default_rng(1000 * (1 + FURTHER.index(kind)) + seed)
+    motion, parameters = drawn_motion(rng), drawn_frame(rng)
+    if kind == "stories":
+        parameters |= {"stiffness_ratio": math.inf}
+    frame, n = rf.Frame(**parameters), parameters["n_stories"]
+    p = frame.rocking()
+    weight, height = p.m_tot * 9.81, 3.0 * n
+    options: dict[str, Any] = {"free_vibration": float(rng.choice([0.0, 3.0]))}
+    model, made = str(rng.choice(["MDOF-S", "MDOF-S", "2DOF-S", "3DOF-S"])), None
+    if kind == "joints":
+        places = np.sort(rng.uniform(0.2, 0.8, int(rng.integers(1, 3)))) * height
+        joints = [rf.Joint(float(place), float(p.half_width * rng.uniform(0.5, 1.0))) for place in places]
+        held = [rf.Tendon(0.1 * weight, weight / 0.02)] if rng.random() < 0.5 else []
+        return RandomRun(
+            restrained(lambda: rf.Jointed(rf.Frame(**parameters), joints), held),
+            shaken_too(motion, seed) if shaken else motion,
+            "MDOF-S",
+            options,
+        )
+    if kind == "podium":
+        width, spacing = float(rng.uniform(0.6, 1.0)), float(rng.choice([4.0, 6.0]))
+
+        def made():
+            return rf.Podium(rf.Frame(**parameters), 4, width, 5.0, column_mass=8e3, column_spacing=spacing)
+
+    elif kind == "yielding springs":
+        count, capacity = int(rng.choice([2, 4, 6])), float(rng.uniform(1.5, 4.0))
+        each = weight / count
+        places = np.linspace(-p.half_width, p.half_width, count)
+        springs = rf.Springs(places, np.full(count, each / 3e-3), np.full(count, 2e5), capacity=capacity * each)
+        options["ground"] = rf.Ground(springs=springs, base_inertia=0.3 * p.m_tot * p.half_width**2)
+    elif kind == "one side":
+        restitution, side, block = float(rng.uniform(0.2, 0.8)), str(rng.choice(["right", "left"])), rng.random() < 0.5
+        model = "rigid" if block else model
+
+        def made():
+            stands = rf.rigid_block(width=0.6, height=6.0, mass=7e3) if block else rf.Frame(**parameters)
+            return rf.OneSided(stands, restitution, side)
+
+    elif kind == "stories":
+        strengths, ratio = [0.25 * weight * (1.0 - 0.6 * k / n) for k in range(n)], float(rng.choice([0.0, 0.05]))
+        model = "MDOF-S"
+
+        def made():
+            return rf.YieldingStories(rf.Frame(**parameters), strengths, ratio)
+
+    elif kind == "leaning":
+
+        def made():
+            return rf.Leaning(rf.Frame(**parameters), 0.3 * p.m_tot / n)
+
+    else:
+        some = (
+            rf.ViscousDamper(2e5, between=(0, 1), cosine=0.8),
+            rf.YieldingDissipator(weight / 0.01, 0.1 * weight, 0.03, between=(n - 1, n)),
+            rf.YieldingDissipator(weight / 0.02, 0.05 * weight, 0.0, height=3.0, rupture_elongation=0.08),
+            rf.Tendon(0.05 * weight, weight / 0.05, height=3.0),
+            rf.Tendon(0.1 * weight, weight / 0.02, 0.5 * p.half_width),
+        )
+        chosen = [each for each in some if rng.random() < 0.5] or [some[1]]
+
+        def made():
+            return rf.Restrained(rf.Frame(**parameters), chosen)
+
+    return RandomRun(
+        made or (lambda: rf.Frame(**parameters)), shaken_too(motion, seed) if shaken else motion, model, options
+    )
 
 
 def restrained(structure: Callable[[], Any], elements: list[Any]) -> Callable[[], Any]:

@@ -18,6 +18,9 @@ from rockflex.foundation.shown import shown
 CENTRAL = {-3: -1 / 60, -2: 9 / 60, -1: -45 / 60, 1: 45 / 60, 2: -9 / 60, 3: 1 / 60}
 ONE_SIDED = {0: -147 / 60, 1: 360 / 60, 2: -450 / 60, 3: 400 / 60, 4: -225 / 60, 5: 72 / 60, 6: -10 / 60}
 """Weights of values at so many steps of a parameter, whose sum over the step is the derivative, to the sixth order."""
+KINK = {-3: 1 / 6, -2: -1.0, -1: 5 / 2, 1: 5 / 2, 2: -1.0, 3: 1 / 6}
+"""The same of their differences from the middle, whose sum is the jump of the slope there: zero to the fifth order."""
+BENT, NOTHING = 1e-5, 1e-5  # of the largest number of a row: such a jump is none of rounding; of all rows: rounding
 NEAR = 1e-5  # of the size of a state: a step for the slopes of a jump
 SMALL = 0.125  # rad of the fastest motion in the smallest step
 LEFT_OUT = 1e-18  # of a series of an exponential, beyond which
@@ -80,17 +83,31 @@ class Neighbours(NamedTuple):
         Of each stack, which of the K systems are in it, and their places there.
     weights
         Shape (P, K); those of a parameter sum up to zero.
+    kinks
+        Weights by which a jump of the slope is found, shape (P, K); zero where the neighbours are on one side.
     """
 
     phases: Sequence[LinearPhase]
     places: Sequence[tuple[Integers, Integers]]
     weights: Array
+    kinks: Array
+
+    def slopes(self, values: Array, own: Array) -> Array:
+        """Derivatives of a matrix from K values and the own one, (P, n, ...); NaN by a parameter at a kink."""
+        apart = values - own
+        found, jumps = _weighed(self.weights, apart), np.abs(_weighed(self.kinks, apart))
+        sizes = np.abs(own) + np.abs(found)
+        of_rows, of_all = (np.max(sizes, axis=of, keepdims=True, initial=0.0) for of in (-1, (-2, -1)))
+        bent = (jumps > BENT * (of_rows + NOTHING * of_all)).reshape(len(found), -1).any(axis=1)
+        found[bent] = np.nan
+        return found
 
 
 def slopes_of_numbers(phase: LinearPhase, own: PhaseNumbers, neighbours: Neighbours) -> PhaseNumbers:
     """Return the derivatives of the numbers of a phase of one system, with a first axis for P parameters.
 
-    What a parameter does not change has no derivative, to the bit. Conditions that some neighbours lack have NaN.
+    What a parameter does not change has no derivative, to the bit. Conditions that some neighbours lack have NaN, and
+    so have rates whose slopes on both sides of the parameter differ.
     """
     m, names = phase.d.shape[1], list(_events_by_name(phase))
     given = PhaseNumbers(*(np.zeros((neighbours.weights.shape[1], *each.shape[1:])) for each in own))
@@ -105,7 +122,8 @@ def slopes_of_numbers(phase: LinearPhase, own: PhaseNumbers, neighbours: Neighbo
             known.rows[:, lacks] = known.rows_v[:, lacks] = np.nan
         for to, values in zip(given, known, strict=True):
             to[among] = values
-    return PhaseNumbers(*(_weighed(neighbours.weights, values - base) for values, base in zip(given, own, strict=True)))
+    slopes = (_weighed(neighbours.weights, values - base) for values, base in zip(given[1:], own[1:], strict=True))
+    return PhaseNumbers(neighbours.slopes(given.rates, own.rates), *slopes)
 
 
 def _weighed(weights: Array, values: Array) -> Array:
@@ -252,7 +270,7 @@ def crossing_of_event(
                     if matrix is None
                     else np.broadcast_to(matrix, (len(each.A), *own.shape[1:]))[where]
                 )
-            changed = _weighed(neighbours.weights, given - own[place])
+            changed = neighbours.slopes(given, own[place])
             slopes = np.concatenate((np.zeros((1, *own.shape[1:])), changed))
         return Crossing(None if own is None else own[place], slopes)
     alone = [(found, int(k)) for among, _, found, _ in others for k in among]  # a function is of one system

@@ -22,11 +22,15 @@ KEPT = 64  # phases, and kinds of events, whose matrices are kept for the next r
 
 
 class NeighbouringModels(NamedTuple):
-    """A model at a few relative changes of one parameter, and the weights by which a derivative is their sum."""
+    """A model at a few relative changes of one parameter, and the weights by which a derivative is their sum.
+
+    If there are as many on both sides, further weights tell the jump of the derivative at a kink.
+    """
 
     engines: Mapping[int, PreparedModel]
     starts: Mapping[int, Start]
     weights: Mapping[int, float]
+    kinks: Mapping[int, float]
 
 
 class RunTangents(NamedTuple):
@@ -110,7 +114,8 @@ def tangents_of_run(
     def neighbours_of(key: Any) -> Neighbours | None:
         if around is None:
             return None
-        return Neighbours([_linear_phase(each, key) for each in around.systems], around.places, around.weights)
+        phases = [_linear_phase(each, key) for each in around.systems]
+        return Neighbours(phases, around.places, around.weights, around.kinks)
 
     def motion_of(key: Any) -> Motion:
         if key not in motions:
@@ -157,6 +162,7 @@ class _Around(NamedTuple):
     systems: Sequence[System]
     places: Sequence[tuple[Integers, Integers]]
     weights: Array
+    kinks: Array
 
 
 def _around(parameters: Sequence[NeighbouringModels], run: Excitation) -> _Around | None:
@@ -165,10 +171,10 @@ def _around(parameters: Sequence[NeighbouringModels], run: Excitation) -> _Aroun
         return None
     engines = [each for some in parameters for each in some.engines.values()]
     share_solvers(dict.fromkeys(engines, ()))
-    weights, first = np.zeros((len(parameters), len(engines))), 0
-    for row, some in zip(weights, parameters, strict=True):
+    (weights, kinks), first = np.zeros((2, len(parameters), len(engines))), 0
+    for row, some in enumerate(parameters):
         for k, step in enumerate(some.engines, first):
-            row[k] = some.weights[step]
+            weights[row, k], kinks[row, k] = some.weights[step], some.kinks.get(step, 0.0)
         first += len(some.engines)
     systems, stacks = list[System](), list[list[tuple[int, int]]]()
     for k, each in enumerate(engines):
@@ -180,7 +186,7 @@ def _around(parameters: Sequence[NeighbouringModels], run: Excitation) -> _Aroun
             known.append(id(system))
         stacks[known.index(id(system))].append((k, each.place))
     places = [(pair[:, 0], pair[:, 1]) for pair in (np.array(stack, dtype=np.int64) for stack in stacks)]
-    return _Around(systems, places, weights)
+    return _Around(systems, places, weights, kinks)
 
 
 def _slopes_of_starts(parameters: Sequence[NeighbouringModels], n: int) -> Array:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockflex.engine.solution import Excitation, Solution
-from rockflex.foundation.arrays import Array
+from rockflex.foundation.arrays import Array, Bools
 from rockflex.foundation.language import translated
 from rockflex.foundation.number_format import rounded_number
 from rockflex.models._prepared_model import PreparedModel
@@ -111,7 +111,7 @@ def numbers_with_derivatives(
     neighbourhoods
         Of each parameter but the first, which is the scale of the record.
     tangents
-        The derivatives of what the engine tracks.
+        The derivatives of what the engine tracks; what has none by a parameter, NaN, has none of these numbers either.
     """
     values = peak_numbers(tied.model, tangents.solution, tied.tracked)
     found = {name: (float(values[name]), np.zeros(1 + len(neighbourhoods))) for name in DERIVED}
@@ -122,16 +122,19 @@ def numbers_with_derivatives(
         for name in DERIVED:
             found[name][1][place] += weight * numbers[name]
 
-    for place in range(1 + len(neighbourhoods)):
+    unknown: Bools = np.asarray(np.isnan(tangents.final).any(axis=1))
+    for place in np.flatnonzero(~unknown).tolist():
         step = _step_of_peaks(tangents, place)
         for way in (1.0, -1.0):
             add(place, tied, _moved(tangents, tied.engine, place, way * step), way / (2.0 * step))
     for place, (models, weights) in enumerate(neighbourhoods, 1):  # what another model makes of the same peaks
-        for k, each in models.items():
+        for k, each in models.items() if not unknown[place] else ():
             add(place, each, _moved(tangents, each.engine, place, 0.0), weights[k] / STEP)
     least, slopes = found["min_vertical_reaction"]
     if tied.model.springs is not None and least < IN_FLIGHT * tied.model.properties.resting_reaction:
         slopes[:] = 0.0  # the base has left the ground
+    for _, slopes in found.values():
+        slopes[unknown] = np.nan
     return found
 
 

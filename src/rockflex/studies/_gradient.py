@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from rockflex.engine.phase_tangent import CENTRAL, KINK
 from rockflex.engine.solution import Excitation
 from rockflex.foundation.arrays import Array
 from rockflex.foundation.errors import InputError
@@ -47,7 +48,8 @@ class Gradient(Value):
         Their values; NaN of a list of numbers, which is one parameter that multiplies all of them.
     logarithmic : dict
         ∂ (peak)/∂ ln (parameter) by the name of the peak, each of shape (P,): what a relative change of a parameter
-        adds to the peak, for small changes.
+        adds to the peak, for small changes. NaN where a parameter is at a kink or within 0.6 % of one, as the height
+        of a tie that is held at a floor: above and below it the displacement between floors is another one.
     slowest : float
         The slowest crossing at an event, its condition over the condition's scale, in 1/s. Where it is near zero a
         small change makes the event appear or vanish, and no derivative tells that.
@@ -91,10 +93,13 @@ class Gradient(Value):
         import pandas as pd
 
         columns = {"value": self.values}
+        known = ~np.all([np.isnan(values) for values in self.logarithmic.values()], axis=0)
         columns |= {
             name: self.elasticity(name)
             for name in self.logarithmic
-            if np.isfinite(values := self.logarithmic[name]).all() and getattr(self.response, name) and values.any()
+            if np.isfinite(values := self.logarithmic[name][known]).all()
+            and getattr(self.response, name)
+            and values.any()
         }
         return pd.DataFrame(columns, index=pd.Index(self.parameters, name="parameter"))
 
@@ -193,7 +198,7 @@ def follow(
     tangents
         The run and its derivatives.
     """
-    case = replace(subject.case(model), extra=extra)
+    case = subject.case(model, extra)
     nearby = [subject.neighbours(model, name, extra) for name in names]
     shakes = has_vertical_motion(motion)
     places = [case.tracked.peaks.places[name] for name in extra or ()]
@@ -210,6 +215,7 @@ def follow(
                 {step: each.engine for step, each in cases.items()},
                 {step: each.start for step, each in cases.items()},
                 {step: weight / STEP for step, weight in weights.items()},
+                {step: weight / STEP for step, weight in KINK.items()} if weights is CENTRAL else {},
             )
             for cases, weights in nearby
         ],

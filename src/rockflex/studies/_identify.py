@@ -252,6 +252,12 @@ class _Point:
     def step(self, damping: float = 0.0) -> tuple[Array, Array]:
         """The step of Levenberg and Marquardt, without damping that of Gauss and Newton, and the covariance."""
         size = np.sqrt((self.slopes**2).sum(axis=0))
+        if np.isnan(size).any():
+            raise InputError(
+                f"{self.names[int(np.isnan(size).argmax())]} has no derivative at its value: the structure has a kink "
+                "there, such as a tie that is held just at a floor. Start from a slightly different value.",
+                field="parameters",
+            )
         if not (size > 0.0).all():
             name = self.names[int(np.argmin(size))]
             raise InputError(

@@ -32,9 +32,9 @@ class Subject:
         self.structure, self.options = structure, options
         self.roots: dict[str, Any] = {"structure": structure, "ground": options.ground, "impact": options.impact}
 
-    def case(self, model: Model) -> PreparedCase:
-        """The runs of a model of the structure."""
-        return self.options.case(model, rocking_properties_of(self.structure))
+    def case(self, model: Model, extra: Mapping[str, Quantities] | None = None) -> PreparedCase:
+        """The runs of a model of the structure, of which further quantities may be tracked."""
+        return self.options.case(model, rocking_properties_of(self.structure), extra=extra)
 
     def names(self) -> tuple[str, ...]:
         """The names of all numbers."""
@@ -111,8 +111,7 @@ class Subject:
         backwards = {-step: -weight for step, weight in ONE_SIDED.items()}
         for weights in (CENTRAL, ONE_SIDED, backwards):
             try:
-                cases = {step: self.changed(place, step * STEP).case(model) for step in weights}
-                return {step: replace(case, extra=extra) for step, case in cases.items()}, weights
+                return {step: self.changed(place, step * STEP).case(model, extra) for step in weights}, weights
             except InputError as error:
                 refused = error
         raise InputError(f"{name} cannot be changed by {STEP:g} of its value: {refused}", field="parameters")

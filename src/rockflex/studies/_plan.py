@@ -96,12 +96,17 @@ class ChunkedPlan(ABC):
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
-        units = self.in_order_of_work(self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1)))
-        size = len(units) if self.threads == 1 else -(-len(units) // (PIECES_PER_THREAD * self.threads))
-        pieces = [units[first : first + size] for first in range(0, len(units), size)]
+        pieces = self.pieces(checked_whole_number("number", number, 0, self.n_chunks - 1))
         found = map_runs_in_order(self.results, pieces, self.threads)
         table = arrow_table(found[0] if len(found) == 1 else joined_tables(found), self.columns)
-        return table if isinstance(units, range) else table.take(np.argsort(units))
+        places = np.argsort(np.concatenate(pieces))
+        return table if (np.diff(places) == 1).all() else table.take(places)
+
+    def pieces(self, number: int) -> list[Sequence[int]]:
+        """Return the units of a chunk in the order in which they are computed, divided among the threads."""
+        units = self.in_order_of_work(self.units_of(number))
+        size = len(units) if self.threads == 1 else -(-len(units) // (PIECES_PER_THREAD * self.threads))
+        return [units[first : first + size] for first in range(0, len(units), size)]
 
     def on_threads(self, threads: int) -> Self:
         """Return the plan whose every chunk is computed on several threads, for studies of few chunks."""

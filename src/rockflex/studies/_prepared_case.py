@@ -196,11 +196,17 @@ class RunOptions:
         return model.of(properties, self.impact, bouc_wen, ground_under_structure(properties, self.ground))
 
     def case(
-        self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False
+        self,
+        model: Model,
+        properties: RockingProperties,
+        *,
+        history: bool = False,
+        floors: bool = False,
+        extra: Mapping[str, Quantities] | None = None,
     ) -> PreparedCase:
         """Return the runs of a model of a structure."""
-        tied = self.model_of(model, properties)
-        return PreparedCase(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
+        tied, of_runs = self.model_of(model, properties), (self.free_vibration, self.initial, self.work_limit)
+        return PreparedCase(tied, *of_runs, history=history, floors=floors, extra=extra)
 
 
 def yielding_model_labels(models: Iterable[str | Model]) -> list[str]:
