@@ -60,6 +60,30 @@ def test_thirty_rapid_edits_end_with_the_last(visit) -> None:
     visitor.wait_for('[data-three="rotation"]', rotation(3.5, 24.0))
 
 
+def test_a_tab_made_anew_keeps_its_request(visit) -> None:
+    """The tab before it has changes to show when the last one is undone, and would ask once more."""
+    visitor = visit()
+    page = visitor.page
+    page.wait_for_selector(".handle")
+    visitor.wait_for('[data-three="rotation"]', rotation(3.5, 24.0))
+    page.evaluate(
+        """() => {
+          const fetched = window.fetch;
+          window.fetch = async (url, options) => { // slow, so that requests meet
+            if (String(url).endsWith("/api/response")) await new Promise((go) => setTimeout(go, 300));
+            return fetched(url, options);
+          };
+          const box = document.querySelector('[data-path="few.B"] input');
+          for (const width of ["8", "9"]) {
+            box.value = width;
+            box.dispatchEvent(new Event("change"));
+          }
+        }"""
+    )
+    page.keyboard.press("Control+z")
+    visitor.wait_for('[data-three="rotation"]', rotation(4.0, 24.0))
+
+
 def test_two_tabs_of_a_browser_have_a_state_each(visit, server) -> None:
     visitor = visit()
     other = visitor.context.new_page()

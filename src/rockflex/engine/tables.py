@@ -15,7 +15,7 @@ SLOTS = 8  # of each row, in a table for the ends of AHEAD samples
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
 FEWEST = 10  # terms of a series, of which none is looked at: that they end earlier is rare
 SMALL = 1e-18  # of a sum: terms that no longer change it
-PARTED = 1.5  # rad that a mode turns within a step, from which on the modes of a phase bound what it can do
+PARTED = 2.0  # rad that a mode turns within a step, from which on the modes of a phase bound what it can do
 FAST = 4.0  # rad from which on it is their amplitude alone that does
 VAGUE = 1e300  # a bound that is as good as none, and does not overflow
 

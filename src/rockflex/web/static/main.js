@@ -45,6 +45,7 @@ export const app = {
   },
   // Query the server about the state; messages appear next to the fields of `root`, or in its foot.
   ask(path, root, extra = {}) {
+    if (root.closest("[data-closed]")) return Promise.resolve(); // it would replace the request of the tab made anew
     const before = messages.get(root);
     return attempt(async () => {
       const answer = await ask(path, { state: app.state, ...extra });
@@ -248,6 +249,7 @@ async function renew(runs) {
   for (const [name, each] of before) {
     each.leave?.();
     each.close?.(runs);
+    each.element.dataset.closed = "";
     delete made[name];
   }
   keep();
