@@ -2,9 +2,9 @@
 How sure is a risk number?
 ==========================
 
-Three questions about one pier on rigid ground: which of its numbers matters,
-whether the records or the structure scatter more, and how rare it is that it
-falls.
+Four questions about one pier on rigid ground: which of its numbers matters,
+whether the records or the structure scatter more, what makes its annual rate
+uncertain, and how rare it is that it falls.
 """
 
 import math
@@ -74,6 +74,37 @@ print(shares["share"].round(3).to_string())
 split, axes = plt.subplots(figsize=(6, 2.6), layout="constrained")
 axes.barh(shares.index, 100 * shares["share"])
 axes.set_xlabel("share of the variance of ln θ [%]")
+axes.invert_yaxis()
+
+# %%
+# **And the rate?** What the records leave open of each fit, two piers, two
+# models, and a hazard with a dispersion of 0.5: shares of the variance of the
+# annual rate of rotations beyond 0.01 rad, alone and with all interactions.
+levels_run = rf.run_cloud(
+    {"drawn": piers[0], "nominal": pier},
+    suite,
+    ["MDOF-S", "2DOF-S"],
+    scales=[0.5, 1.0, 2.0, 4.0],
+)
+mean = rf.HazardCurve(
+    im=[0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2],
+    rate=[6e-2, 2e-2, 5e-3, 9e-4, 1.2e-4, 8e-6, 4e-7],
+)
+rate = rf.rate_shares(
+    rf.HazardBranches.lognormal(mean, dispersion=0.5),
+    {
+        (fit.structure, fit.model): fit.outcomes.curve(0.01)
+        for fit in rf.fit_clouds(levels_run, "pgv")
+    },
+)
+print(rate)
+
+of_rate, axes = plt.subplots(figsize=(6, 2.6), layout="constrained")
+sources = rate.shares.drop("interactions")
+axes.barh(sources.index, 100 * sources["total"], color="0.8", label="in all")
+axes.barh(sources.index, 100 * sources["share"], height=0.5, label="alone")
+axes.set_xlabel("share of the variance of the annual rate [%]")
+axes.legend()
 axes.invert_yaxis()
 
 # %%

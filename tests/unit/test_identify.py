@@ -59,6 +59,40 @@ def test_period_and_damping_from_the_motion_of_a_floor():
     assert found.values == pytest.approx([0.5, 0.02], rel=1e-6)
 
 
+def test_intervals_of_period_and_damping_cover_what_was_computed():
+    record, true = rf.load_suite("el-centro-1940")[0].scaled(0.05), np.log([0.5, 0.02])
+    run = rf.simulate(FRAME, record, "MDOF-S")
+    at = np.searchsorted(run.time, np.arange(record.acceleration.size) * record.dt + 1e-9) - 1
+    seen = run.floor_acceleration[at]
+    off = []
+    for seed in range(24):
+        rng = np.random.default_rng(seed)
+        guess = replace(
+            FRAME, period=0.5 * np.exp(0.05 * rng.normal()), damping_ratio=0.02 * np.exp(0.3 * rng.normal())
+        )
+        noisy = seen + 0.1 * seen.std() * rng.normal(size=seen.shape)
+        found = rf.identify(guess, record, noisy, ["period", "damping_ratio"], observed="floor_acceleration")
+        off.append((np.log(found.values) - true) / found.standard_errors)
+    assert (np.abs(np.mean(off, axis=0)) < 3.0 / np.sqrt(24)).all()
+    assert (np.std(off, axis=0) < 1.5).all()
+    assert (np.sum(np.abs(off) < 1.645, axis=0) >= 17).all()
+
+
+@pytest.mark.parametrize("seed", [0, 11, 24])
+def test_a_far_guess_of_a_frame_that_rocks_does_not_lead_away(seed):
+    # full steps from here end at a restitution of 1, or creep along an impact that comes and goes
+    start, still, rng = rf.InitialState(rotation=0.05), rf.quiet_motion(6.0, 0.01), np.random.default_rng(seed)
+    true = rf.simulate(FRAME, still, "MDOF-S", impact=rf.AngularMomentum(0.9), initial=start).resample(0.01).rotation
+    noise = 0.02 * np.abs(true).max()
+    seen = true + noise * rng.normal(size=true.shape)
+    guess = replace(FRAME, period=0.5 * np.exp(0.05 * rng.normal()), damping_ratio=0.02 * np.exp(0.3 * rng.normal()))
+    law = rf.AngularMomentum(0.9 * np.exp(0.03 * rng.normal()))
+    names = ["period", "damping_ratio", "impact.restitution"]
+    found = rf.identify(guess, still, seen, names, impact=law, initial=start)
+    assert found.residual == pytest.approx(noise, rel=0.1)
+    assert (np.abs(np.log(found.values / [0.5, 0.02, 0.9])) < 4.0 * found.standard_errors).all()
+
+
 @pytest.mark.parametrize(
     ("changes", "field", "word"),
     [

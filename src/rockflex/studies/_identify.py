@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
@@ -29,10 +29,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Observed = Literal["rotation", "floor_acceleration", "total_floor_displacement"]
-CLOSE = 1e-6  # change of a logarithm, over its standard error, from which on an iteration has ended
-CLOSE_ENOUGH = 0.05  # the same, where the fit cannot improve: an impact appears or vanishes
-EXACT = 1e-9  # such a change needs no further iteration, whatever the errors
-HALVINGS = 12  # of a step that does not improve the fit
+CLOSE = 0.01  # a step over its standard errors, below which a fit has ended: it is much smaller than the uncertainty
+CLOSE_ENOUGH = 0.5  # the same, where no step fits better: an impact appears or vanishes at the minimum
+EXACT = 1e-9  # a step of a logarithm that is no step, whatever the errors
+WEAKEST, STRONGEST, STIFFER, SOFTER = 1e-6, 1e6, 4.0, 10.0  # damping of a step, and its factors after each trial
+PART_CLOSE = 0.5  # CLOSE of the parts that only lead to the next one
+# The ways to the best fit, of which the best one counts: parts of the samples that are fitted one after the other, and
+# the longest step of a logarithm. Short steps keep impacts in time, the early ones first; long ones leave a bad start.
+WAYS = (((0.25, 0.5, 1.0), 0.2), ((1.0,), 1.0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,7 +54,7 @@ class Identification(Value):
     residual : float
         Standard deviation of the residuals, in the unit of what was measured.
     iterations : int
-        Number of runs with derivatives.
+        Number of steps, of all searches.
     structure
         The structure with these values; `ground` and `impact` are those of its runs.
 
@@ -116,11 +120,13 @@ def identify(
     iterations: int = 30,
     **options: Unpack[GradientKeywords],
 ) -> Identification:
-    """Find the parameters for which the computed motion is closest to a measured one, by Gauss-Newton.
+    """Find the parameters for which the computed motion is closest to a measured one, by Levenberg-Marquardt.
 
     The sum of squares of the differences at the samples of the record is made as small as possible, with the exact
-    derivatives of `gradient`. It has other minima far away, since each impact is in time or not: start near, or measure
-    a free rocking test, whose few impacts follow one another.
+    derivatives of `gradient`. It has other minima far away, since each impact is in time or not. So the fit is sought
+    twice, and the better one counts: by short steps on the first quarter of the samples, then on half, then on all of
+    them; and by long steps on all. Start near all the same, or measure a free rocking test, whose few impacts follow
+    one another.
 
     Parameters
     ----------
@@ -135,7 +141,7 @@ def identify(
     observed
         ``"rotation"``; ``"floor_acceleration"`` (total, m/s²) or ``"total_floor_displacement"`` (m).
     iterations
-        At most so many runs with derivatives.
+        At most so many steps of a search; one takes a run with derivatives, or a few where steps fail.
 
     Returns
     -------
@@ -147,7 +153,7 @@ def identify(
     InputError
         If what was measured does not fit the motion, or a parameter changes nothing of it; as for `gradient`.
     SolverError
-        If it does not converge, or a run cannot be solved.
+        If no search converges, or the first run cannot be solved.
 
     Examples
     --------
@@ -182,29 +188,18 @@ def identify(
     quantities = _quantities(subject.case(chosen).model, observed)
     seen = _checked_measured(measured, motion, len(quantities), len(names))
     fit = _Fit(chosen, names, motion, quantities, seen)
-    at = fit.at(subject)
-    for count in range(1, iterations + 1):
-        step, covariance = at.step()
-        ahead, errors = np.abs(step), np.sqrt(np.diag(covariance))
-        following = None if (ahead <= np.maximum(CLOSE * errors, EXACT)).all() else fit.better(at, step)
-        if following is None and (ahead <= np.maximum(CLOSE_ENOUGH * errors, EXACT)).all():
-            return Identification(
-                parameters=names,
-                values=np.array([at.subject.number(name) for name in names]),
-                covariance=covariance,
-                residual=math.sqrt(at.cost / (at.difference.size - len(names))),
-                iterations=count,
-                structure=at.subject.structure,
-                ground=at.subject.options.ground,
-                impact=at.subject.options.impact,
-            )
-        if following is None:
-            raise SolverError(
-                f"The identification has come to an end after {count} runs where no step along the slope fits better: "
-                "an impact of the run appears or vanishes there. Start from other values."
-            )
-        at = following
-    raise SolverError(f"The identification has not converged in {iterations} runs. Start closer, or give more.")
+    found, runs = fit.by_all_ways(subject, iterations)
+    _, covariance = found.step()
+    return Identification(
+        parameters=names,
+        values=np.array([found.subject.number(name) for name in names]),
+        covariance=covariance,
+        residual=math.sqrt(found.cost / (found.difference.size - len(names))),
+        iterations=runs,
+        structure=found.subject.structure,
+        ground=found.subject.options.ground,
+        impact=found.subject.options.impact,
+    )
 
 
 def _quantities(model: RockingModel, observed: str) -> Quantities:
@@ -254,8 +249,8 @@ class _Point:
         """Sum of squares."""
         return float(self.difference @ self.difference)
 
-    def step(self) -> tuple[Array, Array]:
-        """The step of Gauss and Newton, and the covariance of the logarithms."""
+    def step(self, damping: float = 0.0) -> tuple[Array, Array]:
+        """The step of Levenberg and Marquardt, without damping that of Gauss and Newton, and the covariance."""
         size = np.sqrt((self.slopes**2).sum(axis=0))
         if np.isnan(size).any():
             raise InputError(
@@ -278,7 +273,8 @@ class _Point:
             )
         inverse = (right.T / sizes) / size[:, None]
         freedom = max(self.difference.size - len(size), 1)
-        return inverse @ (left.T @ self.difference), inverse @ inverse.T * self.cost / freedom
+        damped = (right.T * (sizes / (sizes**2 + damping))) / size[:, None]
+        return damped @ (left.T @ self.difference), inverse @ inverse.T * self.cost / freedom
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,6 +284,55 @@ class _Fit:
     motion: GroundMotion
     quantities: Quantities
     measured: Array
+    longest: float = 1.0  # step of a logarithm
+
+    def by_all_ways(self, subject: Subject, iterations: int) -> tuple[_Point, int]:
+        """The best fit that any way finds, and the number of runs with derivatives of all of them."""
+        found, failures = list[tuple[_Point, int]](), list[SolverError]()
+        for parts, longest in WAYS:
+            try:
+                found.append(replace(self, longest=longest).by_parts(subject, parts, iterations))
+            except SolverError as error:
+                failures.append(error)
+        if not found:
+            raise failures[-1]
+        most = max(point.difference.size for point, _ in found)  # fewer are compared where it overturns
+        best = min((point for point, _ in found if point.difference.size == most), key=lambda point: point.cost)
+        return best, sum(runs for _, runs in found)
+
+    def by_parts(self, subject: Subject, parts: Sequence[float], iterations: int) -> tuple[_Point, int]:
+        """The best fit of all samples from the best of the first ones, and the number of runs with derivatives."""
+        before = 0
+        for part in parts[:-1]:
+            fit = replace(self, measured=self.measured[: math.ceil(part * len(self.measured))])
+            try:
+                point, runs = fit.best(subject, iterations, PART_CLOSE)
+            except (InputError, SolverError):
+                continue  # too little is seen in so few samples
+            subject, before = point.subject, before + runs
+        point, runs = self.best(subject, iterations, CLOSE)
+        return point, before + runs
+
+    def best(self, subject: Subject, iterations: int, close: float) -> tuple[_Point, int]:
+        """The best fit near a subject, and the number of runs with derivatives."""
+        at, damping = self.at(subject), 1e-3
+        for runs in range(1, iterations + 1):
+            step, covariance = at.step()
+            errors = np.sqrt(np.diag(covariance))
+            if (np.abs(step) <= np.maximum(close * errors, EXACT)).all():
+                return at, runs
+            following, damping = self.better(at, damping)
+            if following is None:
+                if close > CLOSE or (np.abs(step) <= CLOSE_ENOUGH * errors).all():
+                    return at, runs
+                raise SolverError(
+                    f"The identification has come to an end after {runs} runs where no step along the slope fits "
+                    "better: an impact of the run appears or vanishes there. Start from other values."
+                )
+            at = following
+        if close > CLOSE:
+            return at, iterations
+        raise SolverError(f"The identification has not converged in {iterations} runs. Start closer, or give more.")
 
     def at(self, subject: Subject) -> _Point:
         """Run the subject, and compare."""
@@ -299,26 +344,33 @@ class _Fit:
         difference = (self.measured[: len(nodes)] - made.seen[nodes])[known]
         return _Point(subject, difference, made.slopes[1:, nodes][:, known].T, self.names)
 
-    def better(self, at: _Point, step: Array) -> _Point | None:
-        """The point after a step, or after a part of it, that fits better; None if none does."""
-        for k in range(HALVINGS):
-            moved = at.subject
-            for name, by in zip(self.names, 0.5**k * step, strict=True):
-                moved = self._changed(moved, name, float(by)) if moved is not None else None
-            if moved is None:
-                continue
-            try:
-                found = self.at(moved)
-            except SolverError:
-                continue
-            if found.difference.size >= at.difference.size and found.cost <= at.cost:
-                return found
-        return None
+    def better(self, at: _Point, damping: float) -> tuple[_Point | None, float]:
+        """A point that fits better, None if no step leads to one, and the damping of the next step.
+
+        A step whose run cannot be solved, overturns early or is of an impossible structure is one that fits worse.
+        """
+        while damping < STRONGEST:
+            step, _ = at.step(damping)
+            if (np.abs(step) <= self.longest).all():
+                moved: Subject | None = at.subject
+                for name, by in zip(self.names, step.tolist(), strict=True):
+                    moved = None if moved is None else self._changed(moved, name, by)
+                found = None if moved is None else self._tried(moved)
+                if found is not None and found.difference.size >= at.difference.size and found.cost < at.cost:
+                    return found, max(damping / SOFTER, WEAKEST)
+            damping *= STIFFER
+        return None, damping
+
+    def _tried(self, subject: Subject) -> _Point | None:
+        try:
+            return self.at(subject)
+        except SolverError:
+            return None
 
     @staticmethod
     def _changed(subject: Subject, name: str, by: float) -> Subject | None:
         try:
-            made = subject.changed(subject.place_of(name), min(max(by, -1.0), 1.0))
+            made = subject.changed(subject.place_of(name), by)
         except InputError:  # out of its range
             return None
         return made
