@@ -33,6 +33,7 @@ SCRIPTS = {
     "fragility_of_a_frame": ("curves", 0),
     "ida_with_resurrections": ("curves", 0),
     "how_sure": ("tornado", 0),
+    "identification": ("figure", 0),
 }
 SIZE, DPI = (400, 280), 150  # pixels of a thumbnail, and dots an inch
 PANELS = Path("gallery", "images", "panels")
