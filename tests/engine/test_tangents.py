@@ -37,7 +37,11 @@ def derived(engine, system_of, h, record, *, start=None, vertical=None, free=Fal
     weights = np.array([list(CENTRAL.values())]) / STEP
 
     def around(key):
-        return None if free else Neighbours([each.checked(key) for each in others.values()], places, weights)
+        return (
+            None
+            if free
+            else Neighbours([each.checked(key) for each in others.values()], places, weights, 0.0 * weights)
+        )
 
     found = follow_tangents(
         trace,
