@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+from rockflex import engine
 from rockflex.engine import run as compiled
 
 
@@ -18,7 +19,9 @@ def as_python(*names: str, instead: dict[str, ModuleType] | None = None) -> dict
     others = {f"rockflex.engine.{name}": module for name, module in (instead or {}).items()}
     wanted = {name: f"rockflex.engine.{name}" for name in names}
     known = {name: sys.modules.pop(name) for name in (*wanted.values(), *others)}
+    attributes = {name: getattr(engine, name) for name in instead or {}}  # which `from rockflex.engine import` reads
     sys.modules.update(others)
+    vars(engine).update(instead or {})
     try:
         for name, whole in wanted.items():
             spec = importlib.util.spec_from_file_location(whole, place / f"{name}.py")
@@ -29,3 +32,4 @@ def as_python(*names: str, instead: dict[str, ModuleType] | None = None) -> dict
         return {name: sys.modules[whole] for name, whole in wanted.items()}
     finally:
         sys.modules.update(known)
+        vars(engine).update(attributes)

@@ -1,8 +1,6 @@
 """Peaks of oscillators against fifty digits, through the compiled module and through the same code run as Python."""
 
-import importlib.util
-import sys
-from pathlib import Path
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -10,7 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 from engine import loops_twin
-from rockflex import engine
+from engine.as_python import as_python
 from rockflex.engine import oscillator as compiled
 
 RECORD = np.random.default_rng(8).normal(size=30)
@@ -20,16 +18,7 @@ RECORD = np.random.default_rng(8).normal(size=30)
 def module(request):
     if request.param == "compiled":
         return compiled
-    beside = Path(str(compiled.__file__)).parent / "oscillator.py"
-    source = Path(__file__).parents[2] / "src" / "rockflex" / "engine" / "oscillator.py"
-    spec = importlib.util.spec_from_file_location("oscillator", beside if beside.exists() else source)
-    assert spec is not None
-    assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, "rockflex.engine.loops", loops_twin)
-        patch.setattr(engine, "loops", loops_twin)
-        spec.loader.exec_module(found)
+    found: Any = as_python("oscillator", instead={"loops": loops_twin})["oscillator"]
     found.Oscillator.march, found.look_together = march_one_by_one, look_everywhere
     return found
 

@@ -57,7 +57,7 @@ def peaks(acceleration, h, frequencies, zeta):
     oscillator: Oscillator = Oscillator(h, zeta)
     i: cython.Py_ssize_t
     with cython.nogil:
-        for i in range(0, omegas.shape[0], 8):
+        for i in range(0, omegas.shape[0], 8):  # TOGETHER, as a number: the sign of a step must be known
             oscillator.peaks(a, omegas[i : i + levels.TOGETHER], factors, motion, places, out[i : i + levels.TOGETHER])
     return found
 
